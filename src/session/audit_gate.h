@@ -4,6 +4,9 @@
 
 #include "audit_gates.h"
 
+/* More inputs share the last bit: of these only gates without memory have so many. */
+enum { AUDIT_GATE_BITS = 32 };
+
 struct audit_gate {
     bool q;                  /* decided */
     bool clock, data, reset; /* when it was looked at last */
@@ -12,11 +15,16 @@ struct audit_gate {
     int count;               /* of clocks; -1: it is not known */
     double held;             /* V, by a sample */
     bool was_seen;
-    unsigned flashes; /* its inputs that were on another side for no time */
-    double free_at;   /* s: what was decided when it was lost is shown from then on */
-    double before;    /* V, what it may take at this instant */
-    double ends;      /* s: a pulse, or the time behind it in which no clock counts */
-    double *due;      /* [n_due] s: what it has to show changes */
+    bool rests;  /* no time changes what was found of it: only what it reads or shows does */
+    bool showed; /* when it was looked at last */
+    int n_sources;
+    const int *source; /* [n_sources] places of what it reads, in `says` */
+    unsigned read;     /* when it was looked at last: a bit for each of them */
+    unsigned flashes;  /* its inputs that were on another side for no time */
+    double free_at;    /* s: what was decided when it was lost is shown from then on */
+    double before;     /* V, what it may take at this instant */
+    double ends;       /* s: a pulse, or the time behind it in which no clock counts */
+    double *due;       /* [n_due] s: what it has to show changes */
     size_t first_due, n_due, capacity;
 };
 
@@ -24,6 +32,18 @@ struct audit_gate {
 struct audit_verdict {
     bool q, is_held, is_known, is_forced;
 };
+
+/* Of all gates; `gate` is there. */
+enum dalcs_status audit_gates_list_sources(struct dalcs_audit_gates *a) DALCS_MUST_CHECK;
+
+/* What all gates show and all comparators say now. */
+void audit_gates_read(struct dalcs_audit_gates *a);
+
+/* Does gate k read or show anything else than when it was looked at last? Notes what it does now. */
+bool audit_gate_reads_another(const struct dalcs_audit_gates *a, int k);
+
+/* The stimulus of its pin; -1: it has none. */
+int audit_gate_shown_by(const struct dalcs_logic_gate *g);
 
 /* *is_known: not what a gate says that nothing shows. */
 bool audit_gate_reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input,

@@ -40,6 +40,7 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
     a->gate = dalcs_alloc((size_t)circuit->control.n_gates, sizeof(*a->gate));
     a->place = dalcs_alloc((size_t)circuit->control.n_comparators + 1, sizeof(*a->place));
     enum dalcs_status status = a->gate != NULL && a->place != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    status = status == DALCS_OK ? audit_gates_list_sources(a) : status;
     status =
         status == DALCS_OK ? dalcs_logic_find_comparators(circuit, radau->base, a->place) : status;
     for (int k = 0; status == DALCS_OK && k < circuit->control.n_gates; k++) {
@@ -63,34 +64,10 @@ void dalcs_audit_gates_finish(struct dalcs_audit_gates *a) {
     }
     free(a->gate);
     free(a->place);
+    free(a->says);
+    free(a->source);
     free(a->node_system);
     *a = (struct dalcs_audit_gates){0};
-}
-
-static int shown_by(const struct dalcs_logic_gate *g) {
-    return g->output[0] >= 0 ? g->output[0] : g->output[1];
-}
-
-/* In the source that shows q or its complement: the last level that was written. */
-static bool shows(const struct dalcs_audit_gates *a, int k) {
-    const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
-    const struct dalcs_stimulus *s = &a->circuit->stimulus[shown_by(g)];
-    const double last = s->u.pwl.v[s->u.pwl.n - 1];
-    return (last > 0.5 * (g->low + g->high)) == (g->output[0] >= 0);
-}
-
-bool audit_gate_reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input,
-                      bool *is_known) {
-    bool bit = false;
-    if (input->from == DALCS_GATE_COMPARATOR) {
-        const struct dalcs_logic_place *p = &a->place[input->index];
-        bit = dalcs_osnsp_is_on(&a->radau->part[p->part].component->osnsp, p->pair);
-    } else if (input->from == DALCS_GATE_GATE) {
-        const bool is_shown = shown_by(&a->circuit->control.gate[input->index]) >= 0;
-        *is_known = *is_known && is_shown;
-        bit = is_shown && shows(a, input->index);
-    }
-    return bit != input->is_inverted;
 }
 
 /* What it has to show by t. *is_near: it changes about then, and which side t is on is rounding. *last: when it last had to
@@ -110,7 +87,8 @@ static void go_to(struct audit_gate *s, double t, double near, bool *is_near, do
 
 /* The time of the last change that was written; its ramp may go on. */
 static double changed_at(const struct dalcs_audit_gates *a, int k) {
-    const struct dalcs_stimulus *s = &a->circuit->stimulus[shown_by(&a->circuit->control.gate[k])];
+    const struct dalcs_stimulus *s =
+        &a->circuit->stimulus[audit_gate_shown_by(&a->circuit->control.gate[k])];
     return s->u.pwl.n > 1 ? s->u.pwl.t[s->u.pwl.n - 2] : -INFINITY;
 }
 
@@ -132,7 +110,7 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
     const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
     struct audit_gate *s = &a->gate[k];
     const bool has_memory = g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g);
-    const bool now = shows(a, k);
+    const bool now = a->says[k];
     if (has_memory && s->is_lost && t >= s->free_at) {
         s->is_lost = false;
         s->q = s->shown = now;
@@ -158,6 +136,7 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
         const bool q = is_open ? now : v.is_held ? s->q : v.q;
         s->q = s->shown = q;
         *is_wrong = q != now;
+        s->rests = !is_open;
         return DALCS_OK;
     }
     s->is_lost = is_open;
@@ -169,11 +148,15 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
     go_to(s, t, near, &is_near, &last);
     const bool is_late = last > -INFINITY && s->shown == now && changed_at(a, k) > last + near;
     *is_wrong = !is_open && !is_near && (s->shown != now || is_late);
+    s->rests = !is_open && !is_near && s->n_due == 0;
     return DALCS_OK;
 }
 
 enum dalcs_status dalcs_audit_gates_go_on(struct dalcs_audit_gates *a,
                                           const struct dalcs_logic_run *logic) {
+    if (a->gate != NULL) {
+        audit_gates_read(a);
+    }
     for (int k = 0; a->gate != NULL && k < a->circuit->control.n_gates; k++) {
         const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
         const struct dalcs_logic_state *state = &logic->network.state[k];
@@ -185,7 +168,7 @@ enum dalcs_status dalcs_audit_gates_go_on(struct dalcs_audit_gates *a,
             s->due[i] = o->due[o->first_due + i].t;
         }
         s->n_due = o->n_due;
-        s->is_lost = false;
+        s->is_lost = s->rests = false;
         s->was_seen = true;
         s->q = state->q;
         s->shown = o->shown;
@@ -268,21 +251,47 @@ static bool is_sample_wrong(struct dalcs_audit_gates *a, int k) {
            (mode != NULL && is_known && (mode->u.pwl.v[mode->u.pwl.n - 1] != 0.0) != tracks);
 }
 
+static bool any_flashes(const struct dalcs_audit_gates *a) {
+    bool any = false;
+    for (int k = 0; k < a->circuit->control.n_comparators && !any; k++) {
+        any = dalcs_logic_run_flashed(a->logic, k);
+    }
+    return any;
+}
+
+static enum dalcs_status look_again(struct dalcs_audit_gates *a, struct dalcs_audit *audit, int k,
+                                    double t) {
+    const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
+    struct audit_gate *s = &a->gate[k];
+    bool is_wrong;
+    s->rests = false;
+    s->flashes = audit_gate_flashes(a, g, audit, t);
+    if (g->kind == DALCS_GATE_SAMPLE) {
+        is_wrong = is_sample_wrong(a, k);
+    } else {
+        DALCS_TRY(look_at(a, k, t, &is_wrong));
+    }
+    if (is_wrong && g->device >= 0) {
+        dalcs_audit_add_position(audit, g->device, 1.0, t);
+    }
+    s->rests = s->rests && !is_wrong && s->flashes == 0 && g->kind != DALCS_GATE_MONOSTABLE &&
+               s->n_sources <= AUDIT_GATE_BITS;
+    return DALCS_OK;
+}
+
+/* A gate at rest for which nothing has changed is as it was found: most are, at most instants. */
 enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dalcs_audit *audit,
                                          const struct dalcs_logic_run *logic, double t) {
     a->logic = logic;
-    for (int k = 0; a->gate != NULL && k < a->circuit->control.n_gates; k++) {
-        if (shown_by(&a->circuit->control.gate[k]) >= 0) {
-            bool is_wrong;
-            a->gate[k].flashes = audit_gate_flashes(a, &a->circuit->control.gate[k], audit, t);
-            if (a->circuit->control.gate[k].kind == DALCS_GATE_SAMPLE) {
-                is_wrong = is_sample_wrong(a, k);
-            } else {
-                DALCS_TRY(look_at(a, k, t, &is_wrong));
-            }
-            if (is_wrong && a->circuit->control.gate[k].device >= 0) {
-                dalcs_audit_add_position(audit, a->circuit->control.gate[k].device, 1.0, t);
-            }
+    if (a->gate == NULL) {
+        return DALCS_OK;
+    }
+    audit_gates_read(a);
+    const bool flashes = any_flashes(a);
+    for (int k = 0; k < a->circuit->control.n_gates; k++) {
+        if (audit_gate_shown_by(&a->circuit->control.gate[k]) >= 0 &&
+            (audit_gate_reads_another(a, k) || flashes || !a->gate[k].rests)) {
+            DALCS_TRY(look_again(a, audit, k, t));
         }
     }
     return DALCS_OK;

@@ -11,8 +11,11 @@ struct dalcs_audit_gates {
     const struct dalcs_readout *readout;
     const struct dalcs_logic_run *logic; /* that has decided last; of it, which bits came back */
     struct dalcs_logic_place *place;     /* [n_comparators] */
-    struct audit_gate *gate;             /* [n_gates]; NULL: there are none */
-    int *node_system;                    /* [n_nodes] -1: none; NULL: there are no samples */
+    bool
+        *says; /* [n_gates], behind these [n_comparators]: at the last instant that was looked at */
+    int *source;             /* places there, of what gates read */
+    struct audit_gate *gate; /* [n_gates]; NULL: there are none */
+    int *node_system;        /* [n_nodes] -1: none; NULL: there are no samples */
 };
 
 /* Does nothing where the circuit has no gates. */

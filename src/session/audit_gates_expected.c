@@ -13,7 +13,9 @@ unsigned audit_gate_flashes(const struct dalcs_audit_gates *a, const struct dalc
             const struct dalcs_radau_part *part = &a->radau->part[a->place[input->index].part];
             const bool begins =
                 part->kind == DALCS_PART_STEPPED && part->segment.t >= t - a->radau->resolution;
-            flashes |= dalcs_audit_has_cause(audit, part->index, t, begins) ? 1u << i : 0u;
+            flashes |= dalcs_audit_has_cause(audit, part->index, t, begins)
+                           ? 1u << (i < AUDIT_GATE_BITS ? i : AUDIT_GATE_BITS - 1)
+                           : 0u;
         }
     }
     return flashes;
