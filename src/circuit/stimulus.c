@@ -150,6 +150,10 @@ bool dalcs_stimulus_jumps_at(const struct dalcs_stimulus *s, double t) {
     if (s->kind == DALCS_STIMULUS_DELAYED) {
         return dalcs_history_jumps_at(s->u.history, t);
     }
+    if (s->kind == DALCS_STIMULUS_PWL && !s->u.pwl.repeats &&
+        t - dalcs_stimulus_tolerance(t, 0) > s->u.pwl.t[s->u.pwl.n - 1]) {
+        return false; /* as what gates write mostly is: it is past */
+    }
     return dalcs_stimulus_value(s, t, DALCS_LEFT) != dalcs_stimulus_value(s, t, DALCS_RIGHT);
 }
 

@@ -27,11 +27,11 @@ static void end_at(struct dalcs_radau_part *part, double t) {
 /* Gates decide once at an instant, by all that happens there. Edges of two clocks that differ by rounding are one: a gate
  * of both would show for no time what it has between them, and a counter behind it would count that. */
 static void gather_ends(struct dalcs_radau *r, double t) {
-    for (int k = 0; k < r->n_parts; k++) {
-        struct dalcs_radau_part *part = &r->part[k];
+    for (int k = 0; k < r->n_stepped; k++) {
+        struct dalcs_radau_part *part = &r->part[r->stepped[k]];
         const struct dalcs_part_segment *s = &part->segment;
-        if (part->kind == DALCS_PART_STEPPED && s->why != DALCS_END_OF_STEP && s->t < t &&
-            s->t_end > t && s->t_end <= t + r->resolution) {
+        if (s->why != DALCS_END_OF_STEP && s->t < t && s->t_end > t &&
+            s->t_end <= t + r->resolution) {
             end_at(part, t);
         }
     }
@@ -40,14 +40,14 @@ static void gather_ends(struct dalcs_radau *r, double t) {
 double dalcs_radau_next_stop(struct dalcs_radau *r, bool *happens) {
     double next = INFINITY;
     *happens = false;
-    for (int k = 0; k < r->n_parts; k++) {
-        next = dalcs_smaller(next, r->part[k].segment.t_end);
+    for (int k = 0; k < r->n_stepped; k++) {
+        next = dalcs_smaller(next, r->part[r->stepped[k]].segment.t_end);
     }
     if (r->decider.decide != NULL) {
         gather_ends(r, next);
     }
-    for (int k = 0; k < r->n_parts; k++) {
-        const struct dalcs_part_segment *s = &r->part[k].segment;
+    for (int k = 0; k < r->n_stepped; k++) {
+        const struct dalcs_part_segment *s = &r->part[r->stepped[k]].segment;
         *happens = *happens || (s->t_end == next && s->why != DALCS_END_OF_STEP);
     }
     return next;
@@ -215,17 +215,19 @@ static enum dalcs_status pass_deciding(struct dalcs_radau *r, double t) {
     const struct passage plain = {false, false};
     struct passage passage;
     bool opens = false;
-    for (int k = 0; k < r->n_parts; k++) {
-        if (ends_by(r, &r->part[k], t)) {
-            DALCS_TRY(leave(r, &r->part[k], &passage));
+    for (int k = 0; k < r->n_stepped; k++) {
+        struct dalcs_radau_part *part = &r->part[r->stepped[k]];
+        if (ends_by(r, part, t)) {
+            DALCS_TRY(leave(r, part, &passage));
         }
     }
     DALCS_TRY(t < r->options.stop ? dalcs_radau_decide(r, t)
                                   : DALCS_OK); /* at the end nothing begins */
-    for (int k = 0; k < r->n_parts; k++) {
-        const bool waits = r->part[k].waits;
-        DALCS_TRY(go_on(r, &r->part[k], &plain));
-        opens = opens || (waits && r->part[k].segment.open);
+    for (int k = 0; k < r->n_stepped; k++) {
+        struct dalcs_radau_part *part = &r->part[r->stepped[k]];
+        const bool waits = part->waits;
+        DALCS_TRY(go_on(r, part, &plain));
+        opens = opens || (waits && part->segment.open);
     }
     return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
 }
@@ -235,24 +237,16 @@ enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) {
     if (r->decider.decide != NULL) {
         return pass_deciding(r, t);
     }
-    for (int k = 0; k < r->n_parts; k++) {
-        if (ends_by(r, &r->part[k], t)) {
+    for (int k = 0; k < r->n_stepped; k++) {
+        struct dalcs_radau_part *part = &r->part[r->stepped[k]];
+        if (ends_by(r, part, t)) {
             struct passage passage;
-            DALCS_TRY(leave(r, &r->part[k], &passage));
-            DALCS_TRY(go_on(r, &r->part[k], &passage));
-            opens = opens || r->part[k].segment.open;
+            DALCS_TRY(leave(r, part, &passage));
+            DALCS_TRY(go_on(r, part, &passage));
+            opens = opens || part->segment.open;
         }
     }
     return opens ? dalcs_radau_tell_open(r) : DALCS_OK;
-}
-
-bool dalcs_radau_is_disturbed(const struct dalcs_radau_part *part, const bool *changed) {
-    const struct dalcs_component *c = part->component;
-    bool is = false;
-    for (int k = 1; k < c->system->n_inputs && !is; k++) {
-        is = dalcs_stimulus_depends(c->circuit, c->system->stimulus[k], changed);
-    }
-    return is;
 }
 
 /* Sources and commands where its segment begins are others. */

@@ -36,13 +36,10 @@ double dalcs_radau_next_stop(struct dalcs_radau *r, bool *happens);
 /* Ends all segments that end at t and starts the next ones. */
 enum dalcs_status dalcs_radau_pass(struct dalcs_radau *r, double t) DALCS_MUST_CHECK;
 
-/* Do stimuli (changed[n_stimuli of the circuit]) act on a part? */
-bool dalcs_radau_is_disturbed(const struct dalcs_radau_part *part, const bool *changed);
-
 /* A segment that has begun before t and would end behind it ends there. */
 void dalcs_radau_cut(struct dalcs_radau_part *part, double t);
 
-/* Stimuli (changed, likewise) are others from t on: a part that they act on, whose segment begins or ends there, begins
+/* Stimuli (changed[n_stimuli of the circuit]) are others from t on: a part that they act on, whose segment begins or ends there, begins
  * anew. */
 enum dalcs_status dalcs_radau_disturb(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                       double t, const bool *changed) DALCS_MUST_CHECK;

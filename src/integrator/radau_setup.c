@@ -221,11 +221,15 @@ enum dalcs_status dalcs_radau_setup(struct dalcs_radau *r, struct dalcs_euler *b
     r->besides[1] = 0.1 * options->abstol;
     dalcs_delays_setup(r, base->circuit);
     r->part = dalcs_alloc((size_t)r->n_parts, sizeof(*r->part));
-    enum dalcs_status status = r->part != NULL ? DALCS_OK : DALCS_E_NOMEM;
+    r->stepped = dalcs_alloc((size_t)r->n_parts, sizeof(*r->stepped));
+    enum dalcs_status status = r->part != NULL && r->stepped != NULL ? DALCS_OK : DALCS_E_NOMEM;
     for (int k = 0; k < r->n_parts && status == DALCS_OK; k++) {
         r->part[k].component = &base->component[k];
         r->part[k].index = k;
         status = part_setup(r, &r->part[k], osnsp);
+        if (r->part[k].kind == DALCS_PART_STEPPED) {
+            r->stepped[r->n_stepped++] = k;
+        }
     }
     const bool may_leap = is_known(base->circuit) && base->circuit->control.n_smooth == 0;
     status = status == DALCS_OK && may_leap ? dalcs_cycle_setup(r) : status;
@@ -254,5 +258,6 @@ void dalcs_radau_finish(struct dalcs_radau *r) {
         part_finish(r, &r->part[k]);
     }
     free(r->part);
+    free(r->stepped);
     *r = (struct dalcs_radau){0};
 }

@@ -71,12 +71,12 @@ static enum dalcs_status show_sample(struct dalcs_logic_run *l, int k, double t)
         if (l->observer != NULL) {
             l->observer->took(l->observer->user, k);
         }
-        l->changed[g->output[0]] = true;
+        dalcs_logic_effect_note(l, g->output[0]);
         DALCS_TRY(write(&l->circuit->stimulus[g->output[0]], &o->time, &o->value, o->capacity,
                         &(struct ramp){t, l->taken[k], 0.0, 1.0}));
     }
     if (g->output[1] >= 0 && o->shown != state->seen) {
-        l->changed[g->output[1]] = true;
+        dalcs_logic_effect_note(l, g->output[1]);
         DALCS_TRY(write(&l->circuit->stimulus[g->output[1]], &o->time_bar, &o->value_bar,
                         &o->capacity[2], &(struct ramp){t, state->seen, 0.0, 1.0}));
     }
@@ -95,7 +95,7 @@ enum dalcs_status dalcs_logic_output_show(struct dalcs_logic_run *l, int k, doub
     for (int pin = 0; pin < 2; pin++) {
         if (g->output[pin] >= 0) {
             const double level = level_of(g, pin, l->network.state[k].seen);
-            l->changed[g->output[pin]] = true;
+            dalcs_logic_effect_note(l, g->output[pin]);
             DALCS_TRY(write(
                 &l->circuit->stimulus[g->output[pin]], pin == 0 ? &o->time : &o->time_bar,
                 pin == 0 ? &o->value : &o->value_bar, &o->capacity[2 * pin],
@@ -160,7 +160,8 @@ enum dalcs_status dalcs_logic_inputs_show(struct dalcs_logic_run *l, double t, b
         struct dalcs_logic_given *g = &l->inputs->source[k];
         struct dalcs_stimulus *s = &l->circuit->stimulus[g->stimulus];
         if (s->u.pwl.v[s->u.pwl.n - 1] != g->now) {
-            l->changed[g->stimulus] = *acts = true;
+            dalcs_logic_effect_note(l, g->stimulus);
+            *acts = true;
             DALCS_TRY(
                 write(s, &g->time, &g->value, g->capacity, &(struct ramp){t, g->now, 0.0, 1.0}));
         }

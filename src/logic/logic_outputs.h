@@ -27,4 +27,12 @@ enum dalcs_status dalcs_logic_inputs_start(struct dalcs_logic_run *l) DALCS_MUST
 enum dalcs_status dalcs_logic_inputs_show(struct dalcs_logic_run *l, double t,
                                           bool *acts) DALCS_MUST_CHECK;
 
+/* Which components each stimulus acts on, and room for what changes. What is not complete is finished, too. */
+enum dalcs_status dalcs_logic_effect_setup(struct dalcs_logic_run *l) DALCS_MUST_CHECK;
+void dalcs_logic_effect_finish(struct dalcs_logic_effect *effect);
+
+/* Nothing has changed; a stimulus has. */
+void dalcs_logic_effect_begin(struct dalcs_logic_run *l);
+void dalcs_logic_effect_note(struct dalcs_logic_run *l, int stimulus);
+
 #endif

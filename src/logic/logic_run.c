@@ -176,7 +176,7 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
 /* Shows what has changed at t. *acts: something has. */
 static enum dalcs_status show_changes(struct dalcs_logic_run *l, double t, bool *acts) {
     *acts = false;
-    memset(l->changed, 0, (size_t)l->circuit->n_stimuli * sizeof(bool));
+    dalcs_logic_effect_begin(l);
     for (int i = 0; i < l->network.moved.n; i++) {
         const int k = l->network.moved.gate[i];
         l->network.moves[k] =
@@ -202,7 +202,7 @@ static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
     }
     for (int k = 0; k < l->radau->n_parts; k++) {
         struct dalcs_radau_part *part = &l->radau->part[k];
-        if (!dalcs_radau_is_disturbed(part, l->changed)) {
+        if (!l->effect.acts[k]) {
             continue;
         }
         if (part->kind == DALCS_PART_STEPPED && part->segment.t < t) {
@@ -211,7 +211,7 @@ static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
                 l->cut.tell(l->cut.user, k, t);
             }
         }
-        DALCS_TRY(dalcs_radau_disturb(l->radau, part, t, l->changed));
+        DALCS_TRY(dalcs_radau_disturb(l->radau, part, t, l->effect.changed));
     }
     return DALCS_OK;
 }

@@ -79,7 +79,14 @@ struct dalcs_logic_run {
     struct dalcs_logic_set waits; /* gates of which something is due */
     double *
         taken; /* [n gates] V: what samples may take at t, as it was before anything happened there */
-    bool *changed;                     /* [n_stimuli] in the present round */
+
+    struct dalcs_logic_effect {
+        bool *changed; /* [n_stimuli] in the present round */
+        bool *acts;    /* [n_components] what has changed does on a component */
+        int *first,
+            *part; /* part[first[k] .. first[k + 1] - 1]: the components that stimulus k acts on */
+    } effect;
+
     double now;                        /* s, of the changes of q that the queue is told of */
     bool is_open;                      /* what happens at `now` is still being decided */
     long number;                       /* the last one given */

@@ -51,15 +51,15 @@ static enum dalcs_status allocate(struct dalcs_logic_run *l) {
     l->sample = dalcs_alloc(n, sizeof(*l->sample));
     l->pulse = dalcs_alloc(n, sizeof(*l->pulse));
     l->taken = dalcs_alloc(n, sizeof(*l->taken));
-    l->changed = dalcs_alloc(n_stimuli, sizeof(*l->changed));
     l->as_built = dalcs_alloc(n_stimuli, sizeof(*l->as_built));
     bool complete = l->bit != NULL && l->change != NULL && l->place != NULL && l->output != NULL &&
                     l->sample != NULL && l->pulse != NULL && l->taken != NULL &&
-                    l->changed != NULL && l->as_built != NULL;
+                    l->as_built != NULL;
     if (complete) {
         memcpy(l->as_built, l->circuit->stimulus, n_stimuli * sizeof(*l->as_built));
     }
     DALCS_TRY(complete ? DALCS_OK : DALCS_E_NOMEM);
+    DALCS_TRY(dalcs_logic_effect_setup(l));
     l->network.bit = l->bit;
     DALCS_TRY(dalcs_logic_set_setup(&l->waits, l->network.n));
     return dalcs_logic_network_setup(&l->network, l->n_comparators);
@@ -119,7 +119,7 @@ void dalcs_logic_run_finish(struct dalcs_logic_run *l) {
     free(l->sample);
     free(l->pulse);
     free(l->taken);
-    free(l->changed);
+    dalcs_logic_effect_finish(&l->effect);
     free(l->as_built);
     dalcs_logic_set_finish(&l->waits);
     dalcs_logic_network_finish(&l->network);

@@ -36,8 +36,8 @@ struct audit_verdict {
 /* Of all gates; `gate` is there. */
 enum dalcs_status audit_gates_list_sources(struct dalcs_audit_gates *a) DALCS_MUST_CHECK;
 
-/* What all gates show and all comparators say now. */
-void audit_gates_read(struct dalcs_audit_gates *a);
+/* What all gates show and all comparators say now: anything else than before? */
+bool audit_gates_read(struct dalcs_audit_gates *a);
 
 /* Does gate k read or show anything else than when it was looked at last? Notes what it does now. */
 bool audit_gate_reads_another(const struct dalcs_audit_gates *a, int k);

@@ -39,6 +39,7 @@ enum dalcs_status dalcs_audit_gates_start(struct dalcs_audit_gates *a,
     }
     a->gate = dalcs_alloc((size_t)circuit->control.n_gates, sizeof(*a->gate));
     a->place = dalcs_alloc((size_t)circuit->control.n_comparators + 1, sizeof(*a->place));
+    a->n_restless = circuit->control.n_gates;
     enum dalcs_status status = a->gate != NULL && a->place != NULL ? DALCS_OK : DALCS_E_NOMEM;
     status = status == DALCS_OK ? audit_gates_list_sources(a) : status;
     status =
@@ -155,7 +156,8 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
 enum dalcs_status dalcs_audit_gates_go_on(struct dalcs_audit_gates *a,
                                           const struct dalcs_logic_run *logic) {
     if (a->gate != NULL) {
-        audit_gates_read(a);
+        (void)audit_gates_read(a);
+        a->n_restless = a->circuit->control.n_gates;
     }
     for (int k = 0; a->gate != NULL && k < a->circuit->control.n_gates; k++) {
         const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
@@ -286,12 +288,18 @@ enum dalcs_status dalcs_audit_gates_look(struct dalcs_audit_gates *a, struct dal
     if (a->gate == NULL) {
         return DALCS_OK;
     }
-    audit_gates_read(a);
+    const bool differs = audit_gates_read(a);
     const bool flashes = any_flashes(a);
+    if (!differs && !flashes && a->n_restless == 0) {
+        return DALCS_OK;
+    }
+    a->n_restless = 0;
     for (int k = 0; k < a->circuit->control.n_gates; k++) {
-        if (audit_gate_shown_by(&a->circuit->control.gate[k]) >= 0 &&
-            (audit_gate_reads_another(a, k) || flashes || !a->gate[k].rests)) {
-            DALCS_TRY(look_again(a, audit, k, t));
+        if (audit_gate_shown_by(&a->circuit->control.gate[k]) >= 0) {
+            if (audit_gate_reads_another(a, k) || flashes || !a->gate[k].rests) {
+                DALCS_TRY(look_again(a, audit, k, t));
+            }
+            a->n_restless += a->gate[k].rests ? 0 : 1;
         }
     }
     return DALCS_OK;

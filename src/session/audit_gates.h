@@ -13,6 +13,7 @@ struct dalcs_audit_gates {
     struct dalcs_logic_place *place;     /* [n_comparators] */
     bool
         *says; /* [n_gates], behind these [n_comparators]: at the last instant that was looked at */
+    int n_restless;          /* gates that are looked at anyhow; before the first look all are */
     int *source;             /* places there, of what gates read */
     struct audit_gate *gate; /* [n_gates]; NULL: there are none */
     int *node_system;        /* [n_nodes] -1: none; NULL: there are no samples */

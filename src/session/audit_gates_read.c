@@ -46,16 +46,21 @@ static bool shows(const struct dalcs_audit_gates *a, const struct dalcs_logic_ga
            (s->u.pwl.v[s->u.pwl.n - 1] > 0.5 * (g->low + g->high)) == (g->output[0] >= 0);
 }
 
-void audit_gates_read(struct dalcs_audit_gates *a) {
+bool audit_gates_read(struct dalcs_audit_gates *a) {
     const struct dalcs_circuit *c = a->circuit;
+    bool differs = false;
     for (int k = 0; k < c->control.n_gates; k++) {
-        a->says[k] = shows(a, &c->control.gate[k]);
+        const bool says = shows(a, &c->control.gate[k]);
+        differs = differs || says != a->says[k];
+        a->says[k] = says;
     }
     for (int k = 0; k < c->control.n_comparators; k++) {
         const struct dalcs_logic_place *p = &a->place[k];
-        a->says[c->control.n_gates + k] =
-            dalcs_osnsp_is_on(&a->radau->part[p->part].component->osnsp, p->pair);
+        const bool says = dalcs_osnsp_is_on(&a->radau->part[p->part].component->osnsp, p->pair);
+        differs = differs || says != a->says[c->control.n_gates + k];
+        a->says[c->control.n_gates + k] = says;
     }
+    return differs;
 }
 
 bool audit_gate_reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input,

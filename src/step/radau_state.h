@@ -221,6 +221,8 @@ struct dalcs_radau {
     bool is_given; /* the states at 0 are: they need not fit together */
     int n_parts;
     struct dalcs_radau_part *part;
+    int n_stepped;
+    int *stepped;                     /* [n_stepped] parts that are not algebraic, ascending */
     struct dalcs_radau_part *cycling; /* the one that may leap; NULL: none */
     double resolution;                /* s: times nearer than this are the same */
     double
