@@ -204,11 +204,11 @@ static enum dalcs_status find_rest(struct dalcs_csr *rest, const struct dalcs_cs
 static void find_valves(struct stamps *b, const struct dalcs_members *m) {
     const struct dalcs_layout *l = b->layout;
     for (int i = 0; i < m->n_devices; i++) {
-        const int valve = l->circuit->device[m->device[i]].valve;
-        if (valve >= 0) {
+        const struct dalcs_device *d = &l->circuit->device[m->device[i]];
+        if (d->kind == DALCS_SWITCH && d->valve >= 0) {
             struct dalcs_pair *pair = &b->s->pair[l->pair[m->device[i]]];
             pair->has_valve = true;
-            pair->valve = l->pair[valve];
+            pair->valve = l->pair[d->valve];
         }
     }
 }
