@@ -19,10 +19,11 @@ double audit_control_slack(struct dalcs_audit *audit, const struct audit_part *p
 /* parts.c: is it a switch with hysteresis? */
 bool audit_remembers(const struct dalcs_circuit *circuit, int device);
 
-/* parts.c: do sources alone decide what controls a switch? */
+/* parts.c: do sources alone decide what controls a switch? Not of one whose valve may open it. */
 static inline bool audit_is_commanded(const struct dalcs_audit *audit, int switch_device) {
     const struct dalcs_device *d = &audit->circuit->device[switch_device];
-    return d->control < 0 && audit->net.is_held[d->node[2]] && audit->net.is_held[d->node[3]];
+    return d->control < 0 && d->valve < 0 && audit->net.is_held[d->node[2]] &&
+           audit->net.is_held[d->node[3]];
 }
 
 /* changes.c: does a switch with hysteresis stand on another side than in the stretch before? Screens tell no change within

@@ -16,6 +16,22 @@ static double short_of(const struct dalcs_audit *audit, const struct dalcs_audit
     return half_width + (closes ? -control : control);
 }
 
+/* The same where it changes over. One whose valve is at the end of its current opens above the lower threshold, but not
+ * above the upper one, where its gate holds it. */
+static double short_of_change(const struct dalcs_audit *audit, const struct audit_part *part,
+                              const struct dalcs_audit_state *before, int device, bool closes) {
+    const int valve = audit->circuit->device[device].valve;
+    const double off = short_of(audit, before, device, closes);
+    double half_width;
+    const double control = audit_control(audit, before, device, &half_width);
+    double scale[2];
+    if (closes || valve < 0) {
+        return off;
+    }
+    audit_diode_scale(audit, part, valve, scale);
+    return fabs(before->i[valve]) <= part->tolerance * scale[1] ? control - half_width : off;
+}
+
 /* ---- Causes -------------------------------------------------------------------------------------- */
 
 static bool sources_bend(const struct dalcs_audit *audit, double t) {
@@ -116,7 +132,7 @@ void audit_check_changes(struct dalcs_audit *audit, const struct audit_part *par
             continue;
         }
         const bool closes = after->is_closed[device];
-        double off = short_of(audit, before, device, closes);
+        double off = short_of_change(audit, part, before, device, closes);
         const double scale = audit_control_scale(audit, part, device);
         if (off > part->tolerance * scale &&
             (part->at.from_coarse || has_other_cause(audit, part, before, after, device))) {

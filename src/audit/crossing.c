@@ -44,8 +44,11 @@ int audit_ways_of_charge(const struct dalcs_audit *audit, const struct audit_par
     case DALCS_VCCS:
         both = d->behaviour != NULL;
         break;
+    case DALCS_RESISTOR:
+        both = dalcs_device_is_short(d); /* one whose current a formula reads */
+        break;
     case DALCS_INDUCTOR:
-        both = is_perfectly_coupled(audit, part, device);
+        both = dalcs_device_is_short(d) || is_perfectly_coupled(audit, part, device);
         break;
     case DALCS_SWITCH:
         audit_find_positions(audit, part, before, after, device, may_be);

@@ -160,7 +160,7 @@ void file_find_given(struct file_audit *a) {
     }
 }
 
-static struct file_number output_of(struct file_audit *a, const struct file_row *row, int device) {
+struct file_number file_output(struct file_audit *a, const struct file_row *row, int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
     if (d->behaviour == NULL) {
         const int *node = d->node;
@@ -178,7 +178,7 @@ static struct file_number output_of(struct file_audit *a, const struct file_row 
 
 struct file_number file_formula_given(struct file_audit *a, const struct file_row *row,
                                       int device) {
-    return file_add(output_of(a, row, device), 1.0, row->v[a->circuit->device[device].node[1]]);
+    return file_add(file_output(a, row, device), 1.0, row->v[a->circuit->device[device].node[1]]);
 }
 
 /* One may read another one that comes later. */

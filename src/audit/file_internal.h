@@ -192,6 +192,9 @@ bool file_rests_before(const struct file_audit *a);
 struct file_number file_stimulus(const struct file_audit *a, const struct file_row *row,
                                  int stimulus);
 
+/* The current of a diode that blocks and of a switch that is open, by its line; not known where it conducts. */
+struct file_number file_blocked(const struct file_audit *a, const struct file_row *row, int device);
+
 /* What u and i of a device may be off by besides. */
 double file_volts(const struct file_audit *a, int device);
 double file_amperes(const struct file_audit *a, int device);
@@ -201,7 +204,8 @@ double file_amperes(const struct file_audit *a, int device);
 /* The output of a device with a behaviour. */
 struct file_number file_formula(struct file_audit *a, const struct file_row *row, int device);
 
-/* The same for a node that no column has: what the tolerance makes of it is in its error. */
+/* The same of any E or G, and for a node that no column has: what the tolerance makes of it is in its error. */
+struct file_number file_output(struct file_audit *a, const struct file_row *row, int device);
 struct file_number file_formula_given(struct file_audit *a, const struct file_row *row, int device);
 
 /* Is the voltage of its first node this device's own output? */
@@ -237,6 +241,9 @@ void file_note_covered(struct file_audit *a);
 /* A defect of a set that was described. */
 void file_find_set(struct file_audit *a, int set, const char *unit, double defect, double allowed,
                    double from, double to);
+
+/* ---- file_islands.c: parts that only sources feed, at rest ---- */
+void file_check_islands(struct file_audit *a, const struct file_row *row);
 
 /* ---- file_branches.c, file_switches.c ---- */
 

@@ -120,32 +120,9 @@ static void ask_set(struct file_audit *a, const struct file_row *row, int set) {
                   a->sets.sum[set].error + a->sets.largest[set], row->t, row->t);
 }
 
-/* At rest sources alone feed a part that capacitors and current sources join to the rest, whatever the file says. Its
- * potential may be anything, and KCL at its nodes is held to a scale that grows with that. */
-static void check_islands(struct file_audit *a, const struct file_row *row) {
-    struct file_number *flow = a->charges.charge;
-    for (int d = 0; d < a->circuit->n_devices; d++) {
-        const struct dalcs_device *device = &a->circuit->device[d];
-        flow[d] = (struct file_number){0};
-        if (device->kind == DALCS_ISOURCE) {
-            flow[d] = file_stimulus(a, row, device->stimulus);
-        } else if (device->kind == DALCS_CAPACITOR) {
-            flow[d] = file_exactly(0.0);
-        }
-    }
-    file_cluster(a, flow);
-    file_sum_sets(a, flow);
-    file_describe_sets(a, NULL);
-    for (int n = 1; n < a->circuit->n_nodes; n++) {
-        if (a->sets.count[n] > 0 && a->sets.sum[n].known) {
-            ask_set(a, row, n);
-        }
-    }
-}
-
 void file_check_nodes(struct file_audit *a, const struct file_row *row) {
     if (a->is_at_rest) {
-        check_islands(a, row);
+        file_check_islands(a, row);
     }
     file_cluster(a, row->i);
     file_sum_sets(a, row->i);

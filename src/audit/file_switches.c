@@ -99,7 +99,7 @@ unsigned char file_position(const struct file_audit *a, const struct file_row *r
         return FILE_OPEN;
     }
     position |= high >= half_width - margin ? FILE_CLOSED : 0;
-    position |= low <= -half_width + margin ? FILE_OPEN : 0;
+    position |= low <= -half_width + margin || d->valve >= 0 ? FILE_OPEN : 0;
     return position;
 }
 

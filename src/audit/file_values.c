@@ -151,8 +151,8 @@ static struct file_number of_law(struct file_audit *a, const struct file_row *ro
 
 /* A diode that blocks and a switch whose position is known have the current that their line gives. One that
  * conducts may have any: a steep line would make much of what its voltage is off by. */
-static struct file_number of_position(const struct file_audit *a, const struct file_row *row,
-                                      int device) {
+struct file_number file_blocked(const struct file_audit *a, const struct file_row *row,
+                                int device) {
     const struct dalcs_device *d = &a->circuit->device[device];
     const struct file_number none = {0}, zero = file_exactly(0.0), u = row->u[device];
     if (d->kind == DALCS_SWITCH && row->position[device] == FILE_OPEN) {
@@ -171,7 +171,7 @@ static struct file_number of_position(const struct file_audit *a, const struct f
 static void take_laws(struct file_audit *a, struct file_row *row, bool assume) {
     for (int d = 0; d < a->circuit->n_devices; d++) {
         if (!row->i[d].known) {
-            row->i[d] = assume ? of_position(a, row, d) : of_law(a, row, d);
+            row->i[d] = assume ? file_blocked(a, row, d) : of_law(a, row, d);
             row->is_assumed[d] = row->i[d].known;
         }
     }

@@ -153,6 +153,20 @@ static void check_mean(struct dalcs_audit *audit, const struct audit_part *part,
     }
 }
 
+/* Below the threshold that closes it a switch with a valve stays closed by the current of that alone. One that decays is 0 to
+ * rounding one day and has not ended: then no voltage is against the valve. */
+static bool is_kept(const struct dalcs_audit *audit, const struct audit_part *part,
+                    const struct dalcs_audit_state *s, int device) {
+    const int valve = audit->circuit->device[device].valve;
+    if (valve < 0 || s->i[valve] != 0.0) {
+        return true;
+    }
+    const struct dalcs_device *d = &audit->circuit->device[valve];
+    const double against = audit->circuit->models.of_diode[d->model].vfwd - audit_voltage(s, d);
+    return against <= audit->options.vntol +
+                          part->tolerance * audit_volts(audit, part, d->node[0], d->node[1]);
+}
+
 static void check_switch(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *s, int device) {
     const struct dalcs_device *d = &audit->circuit->device[device];
@@ -173,7 +187,8 @@ static void check_switch(struct dalcs_audit *audit, const struct audit_part *par
     }
     double half_width;
     const double control = audit_control(audit, s, device, &half_width);
-    double wrong = is_closed ? -half_width - control : control - half_width;
+    const double opens_at = is_kept(audit, part, s, device) ? -half_width : half_width;
+    double wrong = is_closed ? opens_at - control : control - half_width;
     wrong -= wrong > 0.0 ? audit_control_slack(audit, part, s, device) : 0.0;
     audit_find(audit, part, DALCS_AUDIT_POSITION, device, wrong,
                audit_control_scale(audit, part, device), s->t);

@@ -90,8 +90,7 @@ struct dalcs_builder_models {
     int ideal_diode;        /* the model of diodes without one, -1 before the first */
     bool bipolar_is_switch; /* .options bjt=switch */
     struct dalcs_transistor_use *last_transistor; /* NULL: there is none */
-    const struct dalcs_takeover *takeover; /* thyristors that ask takeover.c; the last entry */
-    double diode_current;                  /* A, where an exponential diode and its tangent touch */
+    double diode_current; /* A, where an exponential diode and its tangent touch */
 };
 
 /* What waits until all elements are known. Of lists the last entry, each points to the one before. */

@@ -213,6 +213,7 @@ static struct dalcs_device *add_device(struct dalcs_builder *builder, enum dalcs
     device->kind = kind;
     device->stimulus = -1;
     device->control = -1;
+    device->valve = -1;
     device->model = -1;
     device->name = name;
     device->where = dalcs_builder_keep_location(builder, token);

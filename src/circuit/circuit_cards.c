@@ -119,7 +119,6 @@ enum dalcs_status dalcs_card_table_read(struct dalcs_builder *builder,
         }
         if (pass == ELEMENTS) {
             dalcs_oscillator_put_all(builder);
-            dalcs_thyristor_settle(builder);
         }
     }
     return DALCS_OK;

@@ -88,7 +88,8 @@ struct dalcs_device {
     bool has_initial_state; /* S carries ON or OFF */
     int stimulus;           /* V, I: index into circuit->stimulus, else -1 */
     int control;            /* F, H, W: index of the controlling V device, else -1 */
-    int model;              /* D: index into diode_model; S: into switch_model; else -1 */
+    int valve; /* S: index of the diode in series whose current keeps it closed in its hysteresis, else -1 */
+    int model; /* D: index into diode_model; S: into switch_model; else -1 */
     const struct dalcs_behaviour *behaviour; /* E, G and B; else NULL: linear in node[2..3] */
     struct dalcs_location where;             /* the element's card */
 };

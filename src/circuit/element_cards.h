@@ -138,10 +138,6 @@ void dalcs_diode_parse_block(struct dalcs_builder *builder, const struct dalcs_c
 bool dalcs_thyristor_is(const struct dalcs_builder *builder, const struct dalcs_card *card);
 void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 
-/* takeover.c, when all elements are known: may the current of one, behind its end, go on the other way without a voltage? Then
- * it sees that end by the current. */
-void dalcs_thyristor_settle(struct dalcs_builder *builder);
-
 /* M, Z and Q elements. */
 void dalcs_transistor_parse(struct dalcs_builder *builder, const struct dalcs_card *card);
 /* Their resistances, when all elements are known; refuses those that are no switches. */

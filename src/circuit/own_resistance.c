@@ -155,6 +155,7 @@ static void replace(struct wiring *w, struct dalcs_device *d) {
     d->value = resistance;
     d->behaviour = NULL;
     d->control = -1;
+    d->valve = -1;
     d->node[2] = d->node[3] = 0;
 }
 

@@ -6,10 +6,13 @@
  * control is a sum of which each part is a straight line cut off at both ends, with v of the gate against its
  * reference, i the current and u the voltage of the whole; the switch closes above 1.5 and opens below -0.5:
  *     with Ih      2.5 v/Vgt in [0, 3]  +  i/Ih - 1.5 in [-1, 0]       opens where i has fallen to Ih
- *     without Ih   1.5 v/Vgt in [0, 2]  +  0.5 u/Voff in [-1, 0]       opens where u has fallen to -Voff
+ *     without Ih   1.5 v/Vgt in [0, 2]                                 opens where the diode blocks
  *     of a GTO     besides 0.5 v/Vgoff in [-3, 0]                      opens where v has fallen to -Vgoff
- * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current. Where something
- * may take its current over without a voltage (takeover.c), it is as with Ih = Ioff.
+ * so that all three limits are exact. In both a gate above Vgt closes it and holds it, whatever the current.
+ *
+ * The diode is the valve of the switch (system.h): while it blocks, the switch is closed above 1.5 alone. So the end of the
+ * current is where the diode ends it, whatever voltage follows. A diode against a thyristor, a contactor across it or a
+ * short way around it leave none.
  *
  * With a latching current Il it opens with its gate, unless another switch, which closes where i has fallen to Ih and
  * opens where it has reached Il, has opened: while that is closed, 1 is taken from the control, whose part of i is not
@@ -91,7 +94,7 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
         [IH] = {"ih", DALCS_CURRENT, false, 0, NULL},
         [IL] = {"il", DALCS_CURRENT, false, 0, NULL},
         [VOFF] = {"voff", DALCS_VOLTAGE, false, 1e-3, NULL},
-        [IOFF] = {"ioff", DALCS_CURRENT, false, is_triac ? 1e-6 : 1e-9, NULL},
+        [IOFF] = {"ioff", DALCS_CURRENT, false, 1e-6, NULL},
         [RON] = {"ron", DALCS_OHM, false, 0, NULL},
         [VFWD] = {"vfwd", DALCS_VOLTAGE, false, 0, NULL},
     };
@@ -111,7 +114,6 @@ struct dalcs_thyristor *dalcs_thyristor_parse_model(struct dalcs_reader *reader,
                                   .trigger = p[VGT].value,
                                   .turn_off = p[VGOFF].value,
                                   .holding = p[IH].place != NULL ? p[IH].value : 0.5 * p[IL].value,
-                                  .sees_voltage = is_triac || p[VOFF].place != NULL,
                                   .latching = p[IL].value,
                                   .reversed = p[VOFF].value,
                                   .other = p[IOFF].value,
@@ -204,6 +206,7 @@ static bool expand_half(struct dalcs_builder *builder, const struct dalcs_token 
     valve->node[0] = anode;
     valve->node[1] = half->node[0] = inside;
     valve->model = model->index;
+    half->valve = (int)(valve - builder->circuit->device);
     half->node[2] = node;
     if (model->thyristor->latching > 0) {
         const int unlatched = add_latch(builder, model->thyristor, name, places);
@@ -267,7 +270,5 @@ void dalcs_thyristor_parse(struct dalcs_builder *builder, const struct dalcs_car
     }
     if (is_triac) {
         (void)expand_back(builder, token, both, model, &places);
-    } else if (model->thyristor->holding == 0 && !model->thyristor->sees_voltage) {
-        dalcs_thyristor_wait(builder, model->thyristor, &places, both);
     }
 }

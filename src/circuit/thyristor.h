@@ -11,10 +11,9 @@ struct dalcs_thyristor {
     double trigger, turn_off; /* V of the gate */
     double holding;           /* A; 0: none */
     double latching;          /* A; 0: as long as its gate it conducts whatever flows */
-    double reversed;          /* V */
-    bool sees_voltage;        /* of that, whatever stands against it */
-    double other; /* A in the other half of a triac; that end its own current, where that is seen */
-    double drop;  /* V when it conducts, at least */
+    double reversed;          /* V backwards, of a triac without a holding current */
+    double other;             /* A in the other half of a triac that end its own current */
+    double drop;              /* V when it conducts, at least */
 };
 
 /* The names that a control reads. */
@@ -28,10 +27,5 @@ struct dalcs_thyristor_places {
 const struct dalcs_token *dalcs_thyristor_control(struct dalcs_builder *builder,
                                                   const struct dalcs_thyristor *thyristor,
                                                   const struct dalcs_thyristor_places *places);
-
-/* takeover.c: the one whose control was added last, from node[0] to node[1], sees the end of its current by its voltage, unless
- * dalcs_thyristor_settle finds that something may take the current over. */
-void dalcs_thyristor_wait(struct dalcs_builder *builder, const struct dalcs_thyristor *thyristor,
-                          const struct dalcs_thyristor_places *places, const int *node /* [2] */);
 
 #endif

@@ -41,10 +41,9 @@ static const struct dalcs_formula *control(struct dalcs_formula_writer *w,
     }
     const struct dalcs_formula *sum =
         cut(w, (holds ? 2.5 : 1.5) / t->trigger, v, 0, 0, holds ? 3 : 2);
-    const struct dalcs_formula *keep = holds ? cut(w, p->direction / t->holding, i, -1.5, -1, 0)
-                                             : cut(w, 0.5 / t->reversed, u, 0, -1, 0);
-    if (t->latching == 0) {
-        sum = dalcs_formula_operation(w, DALCS_ADD, sum, keep);
+    if (holds && t->latching == 0) {
+        sum = dalcs_formula_operation(w, DALCS_ADD, sum,
+                                      cut(w, p->direction / t->holding, i, -1.5, -1, 0));
     }
     if (t->kind == DALCS_GTO) {
         sum = dalcs_formula_operation(w, DALCS_ADD, sum, cut(w, 0.5 / t->turn_off, v, 0, -3, 0));

@@ -200,6 +200,19 @@ static enum dalcs_status find_rest(struct dalcs_csr *rest, const struct dalcs_cs
     return DALCS_OK;
 }
 
+/* When all pairs have numbers. */
+static void find_valves(struct stamps *b, const struct dalcs_members *m) {
+    const struct dalcs_layout *l = b->layout;
+    for (int i = 0; i < m->n_devices; i++) {
+        const struct dalcs_device *d = &l->circuit->device[m->device[i]];
+        if (d->kind == DALCS_SWITCH && d->valve >= 0) {
+            struct dalcs_pair *pair = &b->s->pair[l->pair[m->device[i]]];
+            pair->has_valve = true;
+            pair->valve = l->pair[d->valve];
+        }
+    }
+}
+
 /* Everything that the devices say. */
 static enum dalcs_status stamp_all(struct stamps *b, const struct dalcs_members *m) {
     const struct dalcs_layout *l = b->layout;
@@ -208,6 +221,7 @@ static enum dalcs_status stamp_all(struct stamps *b, const struct dalcs_members 
     for (int i = 0; i < m->n_devices; i++) {
         DALCS_TRY(dalcs_stamp_device(b, m->device[i], &next_forest));
     }
+    find_valves(b, m);
     DALCS_TRY(stamp_current_controls(b, m));
     DALCS_TRY(stamp_formulas(b, m));
     DALCS_TRY(stamp_direct_controls(b, m));

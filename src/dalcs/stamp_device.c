@@ -268,7 +268,7 @@ static enum dalcs_status stamp_switch(struct stamps *b, int device) {
     if (d->control < 0) {
         DALCS_TRY(dalcs_stamp_add_voltage(b, &b->control, b->next_pair, d->node[2], d->node[3],
                                           dalcs_stamp_control_sign(m)));
-        pair.is_direct = is_direct(b->layout, d);
+        pair.is_direct = d->valve < 0 && is_direct(b->layout, d);
     }
     DALCS_TRY(
         stamp_pair(b, d->node[0], d->node[1], 0.0, dalcs_stamp_series_part(m->ron, m->roff), pair));

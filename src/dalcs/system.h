@@ -52,22 +52,13 @@ struct dalcs_pair {
     bool initially_on;        /* switches */
     bool is_direct;           /* switches: use direct_control, known before the step is solved */
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */
+    bool has_valve;           /* switches: a diode in series whose current keeps it closed, ... */
+    int valve;                /* ... its pair */
 };
 
 /* A switch with hysteresis. */
 static inline bool dalcs_pair_remembers(const struct dalcs_pair *p) {
     return p->turn_off < p->turn_on;
-}
-
-/* Is a switch that stood there closed at this control? Without hysteresis it is above its threshold alone, with it
- * between both as it was. slack: what the control may be off by. */
-static inline bool dalcs_pair_closes(const struct dalcs_pair *p, bool is_on, double control,
-                                     double slack) {
-    if (!is_on) {
-        return control > p->turn_on + slack;
-    }
-    return dalcs_pair_remembers(p) ? !(control < p->turn_off - slack)
-                                   : control > p->turn_off - slack;
 }
 
 /* A source whose voltage or current is a smooth function f of columns. It stands in the equations as an input, whose
@@ -139,6 +130,26 @@ struct dalcs_system {
 /* Is this pair's bit set in mode[(n_pairs + 63) / 64]? */
 static inline bool dalcs_mode_has(const uint64_t *mode, int pair) {
     return (mode[pair / 64] >> (pair % 64) & 1) != 0;
+}
+
+/* The control below which a closed switch opens. What keeps one with a valve closed in its hysteresis is the
+ * current of that. While the valve blocks, the switch is closed above the upper threshold alone. */
+static inline double dalcs_switch_opens_at(const struct dalcs_system *s, const uint64_t *mode,
+                                           int pair) {
+    const struct dalcs_pair *p = &s->pair[pair];
+    return p->has_valve && !dalcs_mode_has(mode, p->valve) ? p->turn_on : p->turn_off;
+}
+
+/* Is a switch that stood there closed at this control? Without hysteresis it is above its threshold alone, with it
+ * between both as it was. mode: of its valve. slack: what the control may be off by. */
+static inline bool dalcs_switch_closes(const struct dalcs_system *s, const uint64_t *mode, int pair,
+                                       bool is_on, double control, double slack) {
+    const struct dalcs_pair *p = &s->pair[pair];
+    const double opens_at = dalcs_switch_opens_at(s, mode, pair) - slack;
+    if (!is_on) {
+        return control > p->turn_on + slack;
+    }
+    return dalcs_pair_remembers(p) ? !(control < opens_at) : control > opens_at;
 }
 
 static inline bool dalcs_mode_is(const uint64_t *mode, const uint64_t *other, int n_words) {

@@ -137,8 +137,9 @@ static double way_to_turn(const struct dalcs_radau_part *part, int guard) {
         part->segment.out_before + dalcs_system_n_columns(s) + guard - s->n_pairs;
     const double v =
         dalcs_guard_value_at(part, control, part->stages.layout.stride, part->segment.end_before);
-    const double before = dalcs_osnsp_is_on(&part->component->osnsp, d) ? v - s->pair[d].turn_off
-                                                                        : s->pair[d].turn_on - v;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    const double before =
+        dalcs_osnsp_is_on(p, d) ? v - dalcs_switch_opens_at(s, p->mode, d) : s->pair[d].turn_on - v;
     return before > 0.0 ? before / fmax(before - now, before) : at_once;
 }
 

@@ -34,6 +34,12 @@ void dalcs_label_pairs(struct dalcs_assembly *a) {
             continue;
         }
         s->pair[p->row] = m->pair;
+        if (m->pair.has_valve) {
+            const bool is_there = (size_t)m->pair.valve < a->from->n_multipliers;
+            s->pair[p->row].valve = is_there && !a->place[m->pair.valve].is_free
+                                        ? a->place[m->pair.valve].row
+                                        : s->n_pairs;
+        }
     }
     for (int d = 0; d < s->n_pairs; d++) {
         s->column_is_current[n_equations + d] = true;
@@ -76,6 +82,16 @@ void dalcs_label_rows(struct dalcs_assembly *a) {
     }
 }
 
+static bool valves_fit(const struct dalcs_system *s) {
+    bool fit = true;
+    for (int d = 0; d < s->n_pairs; d++) {
+        const struct dalcs_pair *p = &s->pair[d];
+        fit = fit && (!p->has_valve ||
+                      (p->valve < s->n_pairs && s->pair[p->valve].kind == DALCS_PAIR_DIODE));
+    }
+    return fit;
+}
+
 bool dalcs_labels_fit(struct dalcs_reading *r, const struct dalcs_assembly *a) {
     const struct dalcs_system *s = a->s;
     int n = dalcs_system_n_equations(s);
@@ -100,6 +116,11 @@ bool dalcs_labels_fit(struct dalcs_reading *r, const struct dalcs_assembly *a) {
                             "rows and columns do not fit: there must be a row for each state and "
                             "unknown, each paired (dual=) with a column of its own, references "
                             "with references");
+    }
+    if (ok && !valves_fit(s)) {
+        ok = false;
+        dalcs_builder_error(&r->builder, a->from->token, NULL,
+                            "the valve of a switch is the number of a pair of its system");
     }
     return ok;
 }

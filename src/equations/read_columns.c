@@ -182,37 +182,6 @@ static bool read_friction(struct dalcs_reader *reader, struct dalcs_multiplier *
     return true;
 }
 
-/* switch name on=threshold off=threshold [closed] [direct] */
-static bool read_switch(struct dalcs_reader *reader, struct dalcs_pair *p) {
-    p->kind = DALCS_PAIR_SWITCH;
-    while (!dalcs_reader_at_end(reader)) {
-        const struct dalcs_token *parameter = dalcs_reader_take_parameter(reader);
-        if (parameter != NULL && strcmp(parameter->text, "on") == 0) {
-            if (!dalcs_reader_number(reader, DALCS_PLAIN, "a threshold", &p->turn_on)) {
-                return false;
-            }
-        } else if (parameter != NULL && strcmp(parameter->text, "off") == 0) {
-            if (!dalcs_reader_number(reader, DALCS_PLAIN, "a threshold", &p->turn_off)) {
-                return false;
-            }
-        } else if (parameter == NULL && dalcs_reader_take_word(reader, "closed")) {
-            p->initially_on = true;
-        } else if (parameter == NULL && dalcs_reader_take_word(reader, "direct")) {
-            p->is_direct = true;
-        } else {
-            reader->at -= parameter != NULL ? 2 : 0;
-            dalcs_reader_unexpected(reader);
-            return false;
-        }
-    }
-    if (p->turn_off > p->turn_on) {
-        dalcs_builder_error(reader->builder, reader->card->token, reader->usage,
-                            "a switch cannot open above the value that closes it");
-        return false;
-    }
-    return true;
-}
-
 enum multiplier_card {
     PAIR,
     CORNER,
@@ -240,7 +209,7 @@ static bool read_multiplier(struct dalcs_reader *reader, enum multiplier_card ki
         m->pair.is_breakdown = true;
         break;
     case SWITCH:
-        return read_switch(reader, &m->pair);
+        return dalcs_reading_switch(reader, &m->pair);
     case BOX:
         if (!read_box(reader, m)) {
             return false;
@@ -271,15 +240,16 @@ static bool take_multiplier(struct dalcs_reading *r, struct dalcs_described_syst
                             const struct dalcs_card *card) {
     static const struct {
         const char *word, *usage;
-    } cards[N_CARDS] = {[PAIR] = {"pair", "pair name"},
-                        [CORNER] = {"corner", "corner name"},
-                        [BREAKDOWN] = {"reverse", "reverse name"},
-                        [SWITCH] = {"switch", "switch name on=value off=value [closed] [direct]"},
-                        [BOX] = {"interval", "interval name low high"},
-                        [FREE] = {"free", "free name"},
-                        [CONTACT] = {"contact", "contact name"},
-                        [BILATERAL] = {"joint", "joint name"},
-                        [FRICTION] = {"friction", "friction name limit"}};
+    } cards[N_CARDS] = {
+        [PAIR] = {"pair", "pair name"},
+        [CORNER] = {"corner", "corner name"},
+        [BREAKDOWN] = {"reverse", "reverse name"},
+        [SWITCH] = {"switch", "switch name on=value off=value [valve=number] [closed] [direct]"},
+        [BOX] = {"interval", "interval name low high"},
+        [FREE] = {"free", "free name"},
+        [CONTACT] = {"contact", "contact name"},
+        [BILATERAL] = {"joint", "joint name"},
+        [FRICTION] = {"friction", "friction name limit"}};
 
     for (int k = 0; k < N_CARDS; k++) {
         if (strcmp(card->token->text, cards[k].word) != 0) {

@@ -141,6 +141,9 @@ bool dalcs_reading_is_output(const struct dalcs_card *card);
 /* A name on a card: any word or string, kept. NULL when an error was reported. */
 const char *dalcs_reading_name(struct dalcs_reader *reader, const char *what);
 
+/* read_switch.c: what follows its name. false when an error was reported. */
+bool dalcs_reading_switch(struct dalcs_reader *reader, struct dalcs_pair *p);
+
 /* V or A, else as it was. */
 void dalcs_reading_take_unit(struct dalcs_reading *r, struct dalcs_reader *reader,
                              bool *is_current);

@@ -60,6 +60,9 @@ static void put_pairs(struct dalcs_card_writer *w, const struct dalcs_system *s)
         if (is_switch) {
             dalcs_card_parameter(w, "on", p->turn_on);
             dalcs_card_parameter(w, "off", p->turn_off);
+            if (p->has_valve) {
+                dalcs_card_parameter(w, "valve", p->valve + 1);
+            }
         }
         if (p->initially_on) {
             dalcs_card_word(w, "closed");

@@ -149,7 +149,11 @@ void dalcs_text_put_control(struct dalcs_text_writer *w, const struct dalcs_syst
         dalcs_print(p, ", opens below ", "$, opens below $", 0.0);
         dalcs_print_number(p, pair->turn_off);
     }
-    dalcs_print(p, "", "$", 0.0);
+    if (pair->has_valve) {
+        dalcs_print(p, ", and below the former while ", "$, and below the former while ", 0.0);
+        dalcs_print_name(p, s->pair[pair->valve].element);
+    }
+    dalcs_print(p, pair->has_valve ? " blocks" : "", pair->has_valve ? " blocks" : "$", 0.0);
     p->limit = limit;
 }
 

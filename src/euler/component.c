@@ -169,7 +169,7 @@ static void obey_sources(struct dalcs_component *c, const double *inputs) {
         }
         double control = dalcs_csr_row_dot(&s->direct_control, d, inputs);
         bool is_on = dalcs_osnsp_is_on(&c->osnsp, d);
-        bool wants = dalcs_pair_closes(pair, is_on, control, 0.0);
+        bool wants = dalcs_switch_closes(s, c->osnsp.mode, d, is_on, control, 0.0);
         if (wants != is_on) {
             dalcs_osnsp_command(&c->osnsp, d, wants);
             c->commands.moved = true;

@@ -20,7 +20,8 @@ bool dalcs_positions_moves_from(const struct dalcs_positions *p, int i, const ui
     double control = dalcs_csr_row_dot(&s->control, p->pair[i], y);
     bool is_on = dalcs_osnsp_is_on(p->osnsp, p->pair[i]);
     bool was_on = remembers ? dalcs_mode_has(memory, p->pair[i]) : is_on;
-    return dalcs_pair_closes(pair, was_on, control, p->slack[i]) != is_on;
+    return dalcs_switch_closes(s, p->osnsp->mode, p->pair[i], was_on, control, p->slack[i]) !=
+           is_on;
 }
 
 bool dalcs_positions_moves(const struct dalcs_positions *p, int i, const double *y) {

@@ -24,10 +24,11 @@ static double threshold(const struct dalcs_radau_part *part, int guard, double *
         return 0.0;
     }
     int d = dalcs_guard_pair(part, guard);
-    const struct dalcs_pair *pair = &part->component->system->pair[d];
-    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
+    const struct dalcs_system *s = part->component->system;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    bool is_on = dalcs_osnsp_is_on(p, d);
     *sign = is_on ? 1.0 : -1.0;
-    return is_on ? pair->turn_off : -pair->turn_on;
+    return is_on ? dalcs_switch_opens_at(s, p->mode, d) : -s->pair[d].turn_on;
 }
 
 /* What a guard has to be above so that it is beyond doubt, but for rounding. */

@@ -11,8 +11,9 @@ static inline double dalcs_guard_control_at(const struct dalcs_radau_part *part,
     int d = dalcs_guard_pair(part, guard);
     double v = part->segment.out[node * part->stages.layout.stride + dalcs_system_n_columns(s) +
                                  guard - s->n_pairs];
-    bool is_on = dalcs_osnsp_is_on(&part->component->osnsp, d);
-    return is_on ? v - s->pair[d].turn_off : s->pair[d].turn_on - v;
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    return dalcs_osnsp_is_on(p, d) ? v - dalcs_switch_opens_at(s, p->mode, d)
+                                   : s->pair[d].turn_on - v;
 }
 
 /* Values at the nodes, with their stride; of a pair they are in the answer itself. */

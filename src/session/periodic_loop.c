@@ -61,6 +61,7 @@ static enum dalcs_status add_probe(struct dalcs_circuit *c, int node) {
                                                  .node = {0, node},
                                                  .stimulus = c->n_stimuli,
                                                  .control = -1,
+                                                 .valve = -1,
                                                  .model = -1};
     stimulus[c->n_stimuli] = (struct dalcs_stimulus){.kind = DALCS_STIMULUS_DC};
     c->device = device;

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Thyristors whose current something ideal takes over at 0 V: a diode or a thyristor against them, or a switch.
+"""Thyristors whose current something takes over at 0 V or next to it: a diode or a thyristor against them, or a switch.
 
 usage: thyristor_takeovers.py PROGRAM
 
-There no voltage backwards shows the end of a current. Bursts of an AC controller end with the half wave in which both gates
+There no voltage backwards shows the end of a current, nor does any size of it. Bursts of an AC controller end with the half wave in which both gates
 do. A resonant pulse through a thyristor and back through its diode is one period of the ring, and no more. Both have closed
 forms.
 """
@@ -28,6 +28,13 @@ BACK = {
     "a diode with a coil of 0 H": "l3 y u 0\nd1 u x d\n",
     "a diode that is a code model": "a3 y x sd\n",
     "a diode in a subcircuit": "x3 Y X outer\n.subckt outer p q\nx4 p q inner\n.ends\n.subckt inner A K\nd1 a k d\n.ends\n",
+    "a diode behind 1 nohm": "r3 y u 1n\nd1 u x d\n",
+    "a diode behind 1 fH": "l3 y u 1f\nd1 u x d\n",
+    "a diode behind a winding": "l3 y u 1m\nl4 q 0 2m\nk3 l3 l4 1\nr4 q 0 0\nd1 u x d\n",
+    "a diode behind an amplifier of nothing": "e3 y u q 0 3\nv3 q 0 0\nr4 q 0 1\nd1 u x d\n",
+    "a diode behind a formula of nothing": "v3 q 0 0\nr4 q 0 1\nb3 y u V={2*v(q)}\nd1 u x d\n",
+    "a diode behind what reads no current": "v3 q 0 0\nh3 y u v3 5\nd1 u x d\n",
+    "a diode behind a sine of 0 V": "v3 y u sin(0 0 1k)\nd1 u x d\n",
     "a thyristor": "a2 y x g x th\n",
     "a triac": "a2 y x g x tr\n",
 }
@@ -114,19 +121,33 @@ def bypass(checker, program, volts):
             [volts / 5 * math.sin(100 * math.pi * t) if 0.01 < t < 0.073 else 0.0 for t in times])
 
 
+def charge(checker, program, way):
+    """1 uF at 10 V and 1 uF at 0 through what some formula reads the current of, at 10 us: 5 uC."""
+    text = (f"c1 a 0 1u ic=10\nc2 b 0 1u ic=0\n{way}\nvg g b pulse(0 1 10u 0 0 10u 1)\n.model tr triac\n.model ti triac(ih=1m)\n"
+            ".model sw SW(ron=0 vt=0.5)\n.tran 1u 50u uic\n.end\n")
+    times = [1e-6 * (k + 0.31) for k in range(45)]
+    look_at(checker, program, way.replace("\n", ", "), text, times, "v(b)", [0.0 if t < 1e-5 else 5.0 for t in times])
+
+
+CHARGES = ("a1 a b g b tr", "a1 b a g b tr", "a1 a b g b ti", "r1 a u 0\ns1 u b g b sw\nb1 q 0 V=i(r1)",
+           "l1 a u 0\ns1 u b g b sw\nb1 q 0 V={limit(i(l1),-1,1)}", "r1 a u 0\na1 u b g b tr\nb1 q 0 V=i(r1)")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("thyristor_takeovers")
     for cathode, back in ("gnd", "0"), ("0", "GND"), ("gnd", "gnd"):
         two_names_of_ground(checker, program, cathode, back)
     for back in BACK:
-        for volts, ohms, drop in some_of([(100.0, 10.0, 0.0), (1e4, 1.0, 0.0), (3.0, 10.0, 0.0), (50.0, 2.0, 0.7), (1e5, 1.0, 0.0)]):
+        for volts, ohms, drop in some_of([(100.0, 10.0, 0.0), (1e4, 1.0, 0.0), (3.0, 10.0, 0.0), (50.0, 2.0, 0.7), (1e5, 1.0, 0.0), (1e-3, 1e3, 0.0)]):
             if drop == 0 or "diode" in back:
                 resonant(checker, program, back, volts, ohms, drop)
     for back in ("a thyristor", "a triac"):
-        for volts, ratio, periods in some_of([(325.0, 1.0, 2.3), (4e5, 5.0, 1.1), (2.0, 0.01, 0.7), (325.0, 0.2, 1.5)]):
+        for volts, ratio, periods in some_of([(325.0, 1.0, 2.3), (4e5, 5.0, 1.1), (2.0, 0.01, 0.7), (2e-6, 0.5, 0.7), (325.0, 0.2, 1.5)]):
             burst(checker, program, back, volts, ratio, periods)
-    for volts in (325.0, 1.0):
+    for way in CHARGES:
+        charge(checker, program, way)
+    for volts in (325.0, 1.0, 1e-7):
         bypass(checker, program, volts)
     return checker.finish()
 

@@ -329,7 +329,23 @@ vk gk 0 PULSE(0 1 10u 0.36u 0.72u 13.4u 36u)
 .tran 35u 350u uic
 """ + "".join(f"rw{k} {f'w{k - 1}' if k > 0 else 'n0'} w{k} 1k\ncw{k} w{k} 0 1p\n" for k in range(60))
 
+# The current comes back through a diode and 1 uohm: no voltage tells its end.
+THYRISTOR = """a resonant pulse through a thyristor
+v1 in 0 100
+l1 in x 100u ic=0
+c1 y 0 1u ic=0
+a1 x y g y th
+r1 y u 1u
+d1 u x d
+vg g y PULSE(0 1 10u 0 0 5u 1)
+.model d D(ron=0)
+.model th thyristor
+.tran 1u 5m uic
+"""
+
 MUTATIONS = {
+    "a thyristor does not open": (
+        "dalcs/assemble.c", "            pair->has_valve = true;\n", "            pair->has_valve = false;\n", THYRISTOR),
     "a source is dropped from a control": (
         "excitation/control_course.c", "k < a->p[pair + 1]; k++", "k + 1 < a->p[pair + 1]; k++", PWM),
     "a command comes early": (

@@ -83,6 +83,31 @@ ISLANDS = {"1e12": ISLAND.format(current=2, ohms="0.1m", farads="100k"),
            "-1e20": ISLAND.format(current="-1k", ohms=1, farads=1)}
 
 
+# The same where the sources oppose each other, a pair blocks, and inner currents are much larger than what enters.
+PARTS = {"1e17": """two sources that oppose each other
+i0 0 a 2
+i1 b 0 1.9
+r1 a b 0.1m
+c1 b 0 1u
+.op
+""", "-1e20": """a diode that blocks is the only way to ground
+i0 a 0 2
+r1 a b 1
+r2 a b 1
+d1 b 0 di
+.model di D(ron=1m)
+.op
+""", "2e17": """a coil and an amplifier in it
+i0 0 a 2m
+e1 b a a c 3
+r1 b c 10
+l1 c d 1m
+r2 d a 1m
+c1 d 0 1u
+.op
+"""}
+
+
 def runs_away(potential, netlist):
     """Where there is no solution the part is at a potential that nothing determines."""
     given = "    return p->smooth.newton == NULL ? solve(p, sigma, u, y)\n"
@@ -154,7 +179,9 @@ MUTATIONS = {
         "value[i] = -dalcs_recorder_signal(network, e, i);", POINT),
     **{f"a part that a source feeds is at {potential} V": runs_away(potential, netlist)
        for potential, netlist in ISLANDS.items()},
+    **{f"a part with several branches is at {potential} V": runs_away(potential, netlist)
+       for potential, netlist in PARTS.items()},
 }
 
 if __name__ == "__main__":
-    sys.exit(run_all(MUTATIONS, "points", ISLANDS.values()))
+    sys.exit(run_all(MUTATIONS, "points", [*ISLANDS.values(), *PARTS.values()]))

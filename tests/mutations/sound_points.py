@@ -31,6 +31,14 @@ i3 0 q {current}
 i4 p 0 2*{current}
 r3 p q {ohms}
 c3 p 0 1
+g1 0 s d 0 {ohms}
+g2 s t d 0 {ohms}
+f1 t 0 v1 0.3
+f2 0 t v1 0.3
+b1 t 0 I={{v(d)*{ohms}}}
+c4 s 0 1u
+d1 s t di
+.model di D(vfwd=0.7)
 .op
 """.replace("2*{current}", "{{2*{current}}}")
 BALANCES = (("2", "0.1m"), ("1m", "1k"), ("1n", "1g"), ("33k", "1"), ("0.1", "1u"), ("-7", "3meg"))
