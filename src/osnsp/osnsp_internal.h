@@ -35,6 +35,14 @@ struct dalcs_mode_entry {
     size_t bytes;
 };
 
+/* ---- osnsp.c ------------------------------------------------------------------------------- */
+
+/* As dalcs_osnsp_answer() and dalcs_osnsp_solve() with given sources, in whatever answer is come to. */
+enum dalcs_status dalcs_osnsp_answer_given(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           double *y) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_osnsp_solve_given(struct dalcs_osnsp *p, double sigma, const double *u,
+                                          double *y) DALCS_MUST_CHECK;
+
 /* ---- mode_cache.c -------------------------------------------------------------------------- */
 
 /* The form of sigma, condensed now if it is new; it becomes p->cache.form[0]. */
