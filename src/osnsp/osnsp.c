@@ -133,6 +133,9 @@ enum dalcs_status dalcs_osnsp_answer_given(struct dalcs_osnsp *p, double sigma, 
         p->asks.refines = false;
         DALCS_TRY(status);
     }
+    if (!is_answer(p, u, y, sources_clash)) { /* nor one that its states' voltages hide */
+        DALCS_TRY(dalcs_exact_keep_states(p, u, y, &sources_clash));
+    }
     return is_answer(p, u, y, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 

@@ -197,6 +197,10 @@ enum dalcs_status dalcs_exact_evaluate(struct dalcs_osnsp *p, struct dalcs_whole
 enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
                                        bool *sources_clash) DALCS_MUST_CHECK;
 
+/* The same on the equations as they stand, with states that are not recovered from voltages: whatever the signs are. */
+enum dalcs_status dalcs_exact_keep_states(struct dalcs_osnsp *p, const double *u, double *y,
+                                          bool *sources_clash) DALCS_MUST_CHECK;
+
 /* From p->mode on by block principal pivoting, at most `limit` changes, each mode answered with all the
  * digits that it has and, where it is singular, with the least norm. DALCS_OK: certified; DALCS_SINGULAR: a mode leaves
  * too much open. */
