@@ -80,17 +80,18 @@ static enum dalcs_status put_on_threshold(struct dalcs_radau *r, struct dalcs_ra
 
 /* Of the errors of pairs, twice what rounding is known to make, for it is not the same each time. */
 static bool are_rounding(const struct dalcs_radau_part *part, const struct dalcs_slide_try *of) {
-    return of->pairs <= 2.0 * part->length.slide_rounding;
+    return of->bare <= 2.0 * part->length.slide_rounding;
 }
 
-/* A try with an error of pairs, behind a longer one with pairs_before: rounding makes it where it does not shrink with the
- * step, and is no more than sums over the sequences make of the rounding of one mean. */
+/* A try with an error of pairs, behind a longer one with bare_before: rounding makes it where it does not shrink with the
+ * step, and is no more than sums over the sequences make of the rounding of one mean. Noise is the more the shorter a step is: an
+ * error beside it says nothing of whether it shrinks. */
 static void find_rounding(struct dalcs_radau_part *part, const struct dalcs_slide_try *of,
-                          double pairs_before) {
+                          double bare_before) {
     const double noise = of->noise / part->inner_tolerance;
     const double most = of->rounding / dalcs_sum_rounded * noise / (1.0 + noise);
-    if (of->slides && of->pairs > 0.5 * pairs_before && of->pairs <= most) {
-        part->length.slide_rounding = of->pairs;
+    if (of->slides && of->bare > 0.5 * bare_before && of->pairs <= most) {
+        part->length.slide_rounding = of->bare;
     }
 }
 
@@ -103,10 +104,15 @@ static bool is_longer_worth_trying(struct dalcs_part_length *l, double error) {
     return is;
 }
 
-/* Behind a refusal the next shorter ones are of the same try. */
+/* Behind a refusal the next shorter ones are of the same try. Where a length does not hold that did before, something else is on
+ * its way, as a diode that turns: what longer ones were refused for is over with it. */
 static void note_refusal(struct dalcs_part_length *l) {
     const bool was_longer = l->slides_kept == 0;
-    l->slides_patient *= was_longer && l->slides_patient < MOST_KEPT ? 2 : 1;
+    if (!was_longer) {
+        l->slides_patient = 1;
+    } else if (l->slides_patient < MOST_KEPT) {
+        l->slides_patient *= 2;
+    }
     l->slides_kept = 1;
 }
 
@@ -136,9 +142,9 @@ static void note(struct dalcs_radau_part *part, const struct dalcs_slide_try *of
 
 /* Is the try exact enough? Currents that jump where a diode turns, or are rounded, do not even shrink as the step does. */
 static bool is_exact(const struct dalcs_radau_part *part, const struct dalcs_slide_try *of,
-                     double pairs_before) {
+                     double bare_before) {
     return of->slides && of->states <= 1.0 &&
-           (of->pairs <= 1.0 || of->pairs > 0.5 * pairs_before || are_rounding(part, of));
+           (of->pairs <= 1.0 || of->bare > 0.5 * bare_before || are_rounding(part, of));
 }
 
 /* Where a slide ends the flow of one side is along the threshold, and what is left of it is so short that its square is
@@ -202,7 +208,7 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
     const double least = fmax(shortest, part->inner_tolerance * before);
     const double least_end = fmax(shortest, sqrt(part->inner_tolerance) * before);
     const double left = part->length.slide_until - part->segment.t;
-    double pairs_before = INFINITY;
+    double bare_before = INFINITY;
     double states_before = INFINITY;
     bool jumps = false;
     if (left < 2.0 * least_end) {
@@ -214,8 +220,8 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
         const double next = next_length(part, of, least_end);
         bool is_last = r->options.fixed_step > 0.0 ||
                        (of->slides ? next < least : of->fails < 2.0 * least_end);
-        find_rounding(part, of, pairs_before);
-        *slides = of->slides && (is_last || is_exact(part, of, pairs_before));
+        find_rounding(part, of, bare_before);
+        *slides = of->slides && (is_last || is_exact(part, of, bare_before));
         note(part, of);
         if (*slides) {
             bool is_of_length = of->pairs <= 1.0 || are_rounding(part, of);
@@ -235,7 +241,7 @@ static enum dalcs_status find_length(struct dalcs_radau *r, struct dalcs_radau_p
             return starts ? DALCS_OK : finish(r, part, of, slides);
         }
         states_before = of->slides ? of->states : INFINITY;
-        pairs_before = of->slides ? of->pairs : INFINITY;
+        bare_before = of->slides ? of->bare : INFINITY;
         of->h = next;
     }
 }

@@ -103,5 +103,6 @@ void dalcs_slide_find_errors(const struct dalcs_radau *r, struct dalcs_radau_par
     of->states = error_of_states(r, part, of);
     of->pairs = error_of_pairs(r, part, of);
     of->is_coarse = of->pairs > 1.0 || part->stages.method->s == 1;
+    of->bare = of->pairs;
     of->pairs /= 1.0 + of->noise / part->inner_tolerance;
 }

@@ -236,7 +236,7 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
         DALCS_TRY(run_sequence(r, part, j, of));
     }
     part->guards.slides = false;
-    of->states = of->pairs = INFINITY;
+    of->states = of->pairs = of->bare = INFINITY;
     if (of->slides) {
         put_voltages(part, of);
         memcpy(part->segment.out, part->x, (size_t)part->component->system->n_x * sizeof(double));

@@ -21,8 +21,8 @@ struct dalcs_slide_try {
     double held, fails; /* s, if not: up to where there was a mean, and where there was none */
     bool knows_start;   /* all columns there, and voltages of pairs */
     double noise;       /* what rounding may make of the mean of both sides, over it */
-    /* Errors over what is allowed; of pairs without noise. */
-    double states, pairs;
+    /* Errors over what is allowed; of pairs over that and noise, and without noise. */
+    double states, pairs, bare;
     bool is_coarse; /* noise may hide an error of pairs */
 };
 

@@ -53,6 +53,21 @@ static bool is_commutation(const struct dalcs_radau_part *part) {
     return part->guards.flipped && is_at_command(part);
 }
 
+/* An argument has crossed, and its jump is between its sides. A step that holds there is no proof: where outputs act on arguments
+ * there may be other answers, and which one it is depends on where they stood. */
+static bool is_between_sides(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    bool is = false;
+    for (int k = 0; k < part->guards.n_crossed && !is; k++) {
+        const int pair = part->guards.crossed[k];
+        for (int d = pair - 1; d <= pair && pair < p->system->n_pairs && !is; d++) {
+            is = d >= 0 && p->system->pair[d].is_jump && dalcs_osnsp_is_on(p, d) &&
+                 !dalcs_osnsp_is_on(p, d + 1);
+        }
+    }
+    return is;
+}
+
 static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                           double limit) {
     if (part->component->circuit->control.n_delayed >
@@ -275,7 +290,7 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
                                   .fixed = r->options.fixed_step > 0.0,
                                   .guessed = guessed,
                                   .errors.before = INFINITY};
-    bool asks = is_commutation(part) && !guessed && !search.fixed;
+    bool asks = (is_commutation(part) || is_between_sides(part)) && !guessed && !search.fixed;
     if (part->guards.fresh && part->guards.flipped && !guessed && !asks &&
         part->memory.fronts_refused < MOST_FRONTS_REFUSED) {
         DALCS_TRY(dalcs_front_close(part, &search.front));

@@ -75,6 +75,22 @@ enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, d
     return try_whole(p, entry, u, y, sources_clash);
 }
 
+enum dalcs_status dalcs_exact_keep_states(struct dalcs_osnsp *p, const double *u, double *y,
+                                          bool *sources_clash) {
+    struct dalcs_mode_entry *entry;
+    DALCS_TRY(dalcs_modes_get(p, DALCS_PLAIN, &entry));
+    if (entry->singular) {
+        return try_whole(p, entry, u, y, sources_clash);
+    }
+    struct dalcs_whole *whole;
+    DALCS_TRY(factor_whole(p, entry, &whole));
+    dalcs_whole_solve(whole, u, NULL, y);
+    dalcs_certificate_evaluate_with_states(p, u, y, sources_clash);
+    dalcs_whole_finish(whole);
+    free(whole);
+    return DALCS_OK;
+}
+
 /* The pair with the wrong sign, if it is one alone. */
 static int wrong_alone(const struct dalcs_osnsp *p) {
     return p->signs.n_violating == 1 ? p->signs.violating[0] : -1;

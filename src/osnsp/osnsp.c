@@ -1,6 +1,7 @@
 /* osnsp.c - finding the mode: the last one first, then block principal pivoting, then that of a problem with small
  * weights, by Lemke's method where pivots get nowhere; and for small systems that are not passive every mode. */
 #include "in_order.h"
+#include "latches.h"
 #include "magnitudes.h"
 #include "refute.h"
 
@@ -119,8 +120,8 @@ static bool is_answer(struct dalcs_osnsp *p, const double *u, double *y, bool so
            (p->certificate.worst <= most || (is_sign && dalcs_certificate_equations_hold(p, u, y)));
 }
 
-/* In p->mode with given sources. */
-static enum dalcs_status answer(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
+enum dalcs_status dalcs_osnsp_answer_given(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           double *y) {
     bool sources_clash;
     if (p->cache.n_forms == 0 || p->cache.form[0]->sigma != sigma) {
         DALCS_TRY(dalcs_forms_get(p, sigma));
@@ -132,13 +133,17 @@ static enum dalcs_status answer(struct dalcs_osnsp *p, double sigma, const doubl
         p->asks.refines = false;
         DALCS_TRY(status);
     }
+    if (!is_answer(p, u, y, sources_clash)) { /* nor one that its states' voltages hide */
+        DALCS_TRY(dalcs_exact_keep_states(p, u, y, &sources_clash));
+    }
     return is_answer(p, u, y, sources_clash) ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
 enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u, double *y) {
     const double sigma = p->cache.form[0]->sigma;
-    return p->smooth.newton == NULL ? answer(p, sigma, u, y)
-                                    : dalcs_osnsp_solve_smooth(p, sigma, u, y, answer);
+    return p->smooth.newton == NULL
+               ? dalcs_osnsp_answer_given(p, sigma, u, y)
+               : dalcs_osnsp_solve_smooth(p, sigma, u, y, dalcs_osnsp_answer_given);
 }
 
 /* From p->mode by block principal pivoting over regular modes, at most `limit` changes. DALCS_SINGULAR
@@ -268,8 +273,8 @@ static enum dalcs_status solve_whole(struct dalcs_osnsp *p, double sigma, const 
     return status;
 }
 
-/* With given sources. */
-static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double *u, double *y) {
+enum dalcs_status dalcs_osnsp_solve_given(struct dalcs_osnsp *p, double sigma, const double *u,
+                                          double *y) {
     if (dalcs_osnsp_is_cancelled(p)) {
         return DALCS_E_CANCELLED;
     }
@@ -297,6 +302,6 @@ static enum dalcs_status solve(struct dalcs_osnsp *p, double sigma, const double
 
 enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const double *u,
                                     double *y) {
-    return p->smooth.newton == NULL ? solve(p, sigma, u, y)
-                                    : dalcs_osnsp_solve_smooth(p, sigma, u, y, solve);
+    return p->smooth.newton == NULL ? dalcs_latches_solve(p, sigma, u, y)
+                                    : dalcs_osnsp_solve_smooth(p, sigma, u, y, dalcs_latches_solve);
 }

@@ -153,6 +153,24 @@ struct dalcs_osnsp_smooth {
     uint64_t *mode;         /* [n_words] in which the slopes are */
 };
 
+/* latches.c: jumps of formulas */
+struct dalcs_osnsp_latches {
+    int n;
+    int *jump;        /* [n] first pairs of them */
+    uint64_t *before; /* [n_words] the mode before a problem */
+    uint64_t *last;   /* [n_words] that of the last answer */
+    uint64_t
+        *mode; /* [n_words] with kept_y, w and tied: of an answer that others are tried beside */
+    double *kept_y, *w; /* [n_columns], [n_pairs] */
+    bool *tied;         /* [n_pairs] */
+    double *y;          /* [n_columns] of these others */
+    uint64_t *met;      /* [n_words] one of their modes */
+    bool
+        is_known; /* the last mode in which none of those between their sides holds itself is in `rests` */
+    uint64_t *rests; /* [n_words] */
+    double sigma;    /* and its step */
+};
+
 /* What has no meaning between two problems. */
 struct dalcs_osnsp_work {
     double *difference;  /* [n_x + n_columns + n_inputs] (sigma (x+ - x_k), y, s) being checked */
@@ -180,6 +198,7 @@ struct dalcs_osnsp {
     struct dalcs_ordered_blocks
         *blocks; /* of this partition; NULL: not asked for yet, or there is one block */
     struct dalcs_osnsp_smooth smooth;
+    struct dalcs_osnsp_latches latches;
     int n_words;
     uint64_t *mode; /* [n_words] bit d: w_d = 0 */
     double *w;      /* [n_pairs] of the last answer */

@@ -35,6 +35,14 @@ struct dalcs_mode_entry {
     size_t bytes;
 };
 
+/* ---- osnsp.c ------------------------------------------------------------------------------- */
+
+/* As dalcs_osnsp_answer() and dalcs_osnsp_solve() with given sources, in whatever answer is come to. */
+enum dalcs_status dalcs_osnsp_answer_given(struct dalcs_osnsp *p, double sigma, const double *u,
+                                           double *y) DALCS_MUST_CHECK;
+enum dalcs_status dalcs_osnsp_solve_given(struct dalcs_osnsp *p, double sigma, const double *u,
+                                          double *y) DALCS_MUST_CHECK;
+
 /* ---- mode_cache.c -------------------------------------------------------------------------- */
 
 /* The form of sigma, condensed now if it is new; it becomes p->cache.form[0]. */
@@ -188,6 +196,10 @@ enum dalcs_status dalcs_exact_evaluate(struct dalcs_osnsp *p, struct dalcs_whole
 /* In p->mode, singular or not, evaluated. DALCS_SINGULAR: it leaves too much open. */
 enum dalcs_status dalcs_exact_try_mode(struct dalcs_osnsp *p, const double *u, double *y,
                                        bool *sources_clash) DALCS_MUST_CHECK;
+
+/* The same on the equations as they stand, with states that are not recovered from voltages: whatever the signs are. */
+enum dalcs_status dalcs_exact_keep_states(struct dalcs_osnsp *p, const double *u, double *y,
+                                          bool *sources_clash) DALCS_MUST_CHECK;
 
 /* From p->mode on by block principal pivoting, at most `limit` changes, each mode answered with all the
  * digits that it has and, where it is singular, with the least norm. DALCS_OK: certified; DALCS_SINGULAR: a mode leaves

@@ -1,5 +1,6 @@
 /* osnsp_setup.c - what is listed of a system once, and room for its problems. */
 #include "in_order.h"
+#include "latches.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -193,6 +194,7 @@ static enum dalcs_status build(struct dalcs_osnsp *p) {
     DALCS_TRY(list_column_rows(p));
     DALCS_TRY(list_references(p));
     DALCS_TRY(list_drives(p));
+    DALCS_TRY(dalcs_latches_setup(p));
     return dalcs_osnsp_smooth_setup(p);
 }
 

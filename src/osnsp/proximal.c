@@ -135,7 +135,7 @@ static void find_violations(struct dalcs_osnsp *p) {
     double largest = largest_unknown(p);
     p->signs.n_violating = 0;
     for (int d = 0; d < f->n_pairs; d++) {
-        if (p->system->pair[d].kind != DALCS_PAIR_DIODE) {
+        if (!p->lists.is_diode[d]) {
             continue;
         }
         double w = dalcs_proximal_scaled_w(p, d);
