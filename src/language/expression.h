@@ -96,6 +96,7 @@ struct dalcs_expression_context {
     struct dalcs_dialect dialect;
     bool *noted_caret; /* this and the next: a note about it was made */
     bool *noted_log;
+    bool *noted_pwr; /* NULL: none is made */
 };
 
 /* Compiles a text. NULL when out of memory; errors are reported and make it is_wrong. */

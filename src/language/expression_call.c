@@ -127,6 +127,34 @@ static void parse_point(struct dalcs_parser *p) {
     dalcs_parser_close(p, open);
 }
 
+/* Does what was emitted from operation `first` on read a voltage or a current? */
+static bool reads_signal(const struct dalcs_parser *p, size_t first, size_t end) {
+    bool reads = false;
+    for (size_t k = first; k < end && !p->failed; k++) {
+        reads = reads || p->operation[k].code == DALCS_PUSH_SIGNAL;
+    }
+    return reads;
+}
+
+/* Of a voltage or a current, pwr(x, y) has the sign of x in ngspice, and in no other simulator. */
+static const char *read_power(struct dalcs_parser *p, int begin, int length, const char *name,
+                              bool of_signal) {
+    const struct dalcs_expression_context *c = p->context;
+    const bool differs =
+        c->dialect.name != DALCS_DIALECT_LTSPICE && c->dialect.name != DALCS_DIALECT_XYCE;
+    if (!c->has_signals || !differs || strcmp(name, "pwr") != 0) {
+        return name;
+    }
+    if (of_signal && !c->dialect.is_told && c->noted_pwr != NULL && !*c->noted_pwr) {
+        *c->noted_pwr = true;
+        dalcs_parser_report(p, DALCS_WARNING, begin, length,
+                            "write pwrs(x, y) for that, or pwr(abs(x), y)",
+                            "pwr(x, y) is abs(x)**y, as in LTspice, PSpice and Xyce; a source of "
+                            "ngspice gives it the sign of x");
+    }
+    return c->dialect.is_told ? "pwrs" : name;
+}
+
 static void parse_call(struct dalcs_parser *p, int begin, int length, const char *name) {
     const int open = p->begin;
     const struct dalcs_function *function = dalcs_function_find(name, p->context->dialect.name);
@@ -147,6 +175,8 @@ static void parse_call(struct dalcs_parser *p, int begin, int length, const char
                    .code = DALCS_CHECK_CALL, .begin = begin, .length = length, .u.name = name});
     }
     int n = 0;
+    const size_t first = p->n;
+    size_t end = p->n; /* of the first argument */
     if (p->symbol != DALCS_SYMBOL_CLOSE) {
         do {
             if (n > 0) {
@@ -158,11 +188,13 @@ static void parse_call(struct dalcs_parser *p, int begin, int length, const char
             } else {
                 dalcs_parser_choice(p);
             }
+            end = n == 0 ? p->n : end;
             n += has_two ? 2 : 1;
         } while (p->symbol == DALCS_SYMBOL_COMMA && !p->failed);
     }
     dalcs_parser_close(p, open);
     note_log(p, begin, length, name);
+    name = read_power(p, begin, length, name, reads_signal(p, first, end));
     dalcs_parser_emit(
         p, (struct dalcs_operation){
                .code = DALCS_CALL, .count = n, .begin = begin, .length = length, .u.name = name});

@@ -141,7 +141,8 @@ const struct dalcs_formula *dalcs_formula_make_of(struct dalcs_language *languag
                                                                     strcmp(variable, "s") == 0,
                                                      .dialect = language->netlist->dialect,
                                                      .noted_caret = &language->noted.caret,
-                                                     .noted_log = &language->noted.log};
+                                                     .noted_log = &language->noted.log,
+                                                     .noted_pwr = &language->noted.pwr};
     struct dalcs_expression_text text;
     struct dalcs_expression *expression = NULL;
     if (dalcs_expression_text(language->arena, token, n, &text)) {

@@ -62,7 +62,7 @@ struct dalcs_language {
     bool is_condition; /* what is compiled is that of an .if */
 
     struct {
-        bool caret, log;
+        bool caret, log, pwr;
     } noted; /* messages that are given once */
 
     struct {

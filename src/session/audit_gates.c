@@ -106,6 +106,22 @@ static double longest_delay(const struct dalcs_logic_gate *g) {
     return fmax(fmax(g->delay[0], g->delay[1]), fmax(g->forced_delay[0], g->forced_delay[1]));
 }
 
+/* Does a gate without memory show what it has decided? So it does at once, but for a monostable whose pulse nobody has seen
+ * begin: what that decided is shown when it has decided nothing else for its longest delay. */
+static bool is_settled(const struct dalcs_audit_gates *a, int k, const struct audit_verdict *v,
+                       bool now, double t) {
+    const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
+    struct audit_gate *s = &a->gate[k];
+    if (g->kind != DALCS_GATE_MONOSTABLE) {
+        return v->is_known;
+    }
+    if (!v->is_known || v->q != s->q) {
+        s->q = v->q;
+        s->free_at = t + longest_delay(g) + 4.0 * a->radau->resolution;
+    }
+    return v->is_known && v->q == now && t >= s->free_at;
+}
+
 /* Gate k at t; is_wrong: it does not show what it has to. */
 static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, bool *is_wrong) {
     const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
@@ -122,12 +138,12 @@ static enum dalcs_status look_at(struct dalcs_audit_gates *a, int k, double t, b
     const bool is_open = !v.is_known || (v.is_held && audit_gate_may_have_missed(a, g)) ||
                          audit_gate_may_be_undone(a, g, &v);
     *is_wrong = false;
-    if (s->is_lost && !has_memory && v.is_known) { /* what it showed stands until it decides else */
-        s->is_lost = false;
+    if (s->is_lost && !has_memory && is_settled(a, k, &v, now, t)) {
+        s->is_lost = false; /* what it showed stands until it decides else */
         s->q = s->shown = now;
         s->first_due = s->n_due = 0;
     }
-    if (is_open || !v.is_held) {
+    if (has_memory && (is_open || !v.is_held)) {
         s->free_at = t + longest_delay(g) + 4.0 * a->radau->resolution;
     }
     if (s->is_lost) {

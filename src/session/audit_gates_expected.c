@@ -118,24 +118,39 @@ struct audit_verdict audit_gate_of_counter(const struct dalcs_audit_gates *a,
     return v;
 }
 
+/* From a clock on to where the next one counts, and what shows it has been shown. */
+static double whole_pulse(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
+                          double length) {
+    return g->pulse.lead + length + g->pulse.recovery + 4.0 * a->radau->resolution;
+}
+
 struct audit_verdict audit_gate_of_monostable(const struct dalcs_audit_gates *a,
                                               const struct dalcs_logic_gate *g,
                                               struct audit_gate *s, double t) {
     struct audit_verdict v = {.is_known = true};
     const bool clock = audit_gate_reads(a, &g->input[DALCS_GATE_CLOCK], &v.is_known);
     const bool clears = audit_gate_reads(a, &g->input[DALCS_GATE_CLEAR], &v.is_known);
+    const double length = g->sampled >= 0 ? fmax(0.0, s->before) : g->pulse.length;
     while (s->count > 0 && s->ends <= t + 4.0 * a->radau->resolution) {
         s->count = s->count == 1 && !g->pulse.is_retriggered ? 2 : 0;
         s->ends += g->pulse.recovery;
     }
+    if (s->count < 0 && s->ends <= t) {
+        s->count = 0;
+    }
     const bool rises = (clock && !s->clock && s->was_seen) || has(s, DALCS_GATE_CLOCK);
     if (clears || has(s, DALCS_GATE_CLEAR)) {
         s->count = 0;
+    } else if (clock && !s->was_seen) {
+        s->count = -1; /* has it risen at the start, or was it high before? */
+        s->ends = g->sampled >= 0 ? INFINITY : t + whole_pulse(a, g, length);
+    } else if (rises && s->count < 0 && !g->pulse.is_retriggered) {
+        s->ends = fmax(s->ends, t + whole_pulse(a, g, length));
     } else if (rises && (s->count == 0 || g->pulse.is_retriggered)) {
         s->count = 1;
-        s->ends = t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, s->before) : g->pulse.length);
+        s->ends = t + g->pulse.lead + length;
     }
-    v.is_known = v.is_known && (s->was_seen || !clock);
+    v.is_known = v.is_known && s->count >= 0;
     v.is_forced = clears || has(s, DALCS_GATE_CLEAR);
     v.q = s->count == 1;
     s->clock = clock;

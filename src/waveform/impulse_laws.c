@@ -273,19 +273,6 @@ static void find_moves(struct dalcs_impulses *m) {
     } while (spread_moves(m, true));
 }
 
-/* What is left is what jumps are made of. */
-static void forget(struct dalcs_impulses *m) {
-    const struct dalcs_circuit *c = m->circuit;
-    for (int k = 0; k < c->n_devices; k++) {
-        const struct dalcs_device *d = &c->device[k];
-        const bool follows = dalcs_holds_voltage(d) || dalcs_holds_current(d) || is_resistor(d);
-        m->charge[k] = follows ? (double)NAN : m->charge[k];
-    }
-    for (int n = 1; n < c->n_nodes; n++) {
-        m->node[n] = NAN;
-    }
-}
-
 static void begin(struct dalcs_impulses *m) {
     const struct dalcs_circuit *c = m->circuit;
     memset(m->sum, 0, 2 * (size_t)c->n_nodes * sizeof(double));
@@ -327,6 +314,8 @@ void dalcs_impulses_solve(struct dalcs_impulses *m) {
         }
     } while (take_reference(m));
     if (!adds_up(m)) {
-        forget(m);
+        begin(m); /* what the laws say without an answer that was taken */
+        while (go_round(m, false)) {
+        }
     }
 }

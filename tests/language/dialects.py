@@ -129,6 +129,22 @@ def shown(text, card):
 
 RSER = "V9 in x 0 Rser=1\nR9 x 0 1k"
 
+# A power of a negative voltage: ngspice alone gives pwr its sign.
+PWR = """pwr
+V1 in 0 SIN(0 2 1k)
+B1 a 0 V=pwr(v(in),3)
+R1 a 0 1k
+B2 0 b I=1m*pwr(2*v(in)+v(b),{y})
+R2 b 0 100
+C2 b 0 1u
+B3 c 0 V=pwr(8,1/3)
+R3 c 0 1k
+.param y=1.5
+.tran 10u 1m
+.end
+"""
+PWR_SIGNED = PWR.replace("pwr(v", "pwrs(v").replace("pwr(2", "pwrs(2")
+
 # Netlist, options, the same without a dialect, and how often it warns.
 CASES = [
     ("numbers, told", told(NUMBERS, "ltspice"), [], NUMBERS_FLAT, 0),
@@ -145,6 +161,11 @@ CASES = [
     ("power, ngspice", told(POWER, "ngspice"), [], POWER_FLAT, 0),
     ("power, ngspice by the command line", told(POWER, "ltspice"), ["--dialect", "ngspice"],
      POWER_FLAT, 0),
+    ("pwr, nothing said", PWR, [], PWR, 1),
+    ("pwr, ltspice", PWR, ["--dialect", "ltspice"], PWR, 0),
+    ("pwr, ltspice shown", shown(PWR, RSER), [], shown(PWR, RSER), 0),
+    ("pwr, ngspice", told(PWR, "ngspice"), [], PWR_SIGNED, 0),
+    ("pwr, ngspice by the command line", PWR, ["--dialect", "ngspice"], PWR_SIGNED, 0),
 ]
 
 
