@@ -18,10 +18,11 @@ static enum dalcs_status search(struct dalcs_steady *st, bool *found) {
     dalcs_steady_limit_crowd(st, false);
     *found = status == DALCS_OK && *found;
     s->circuit.analyses.transient.use_initial_conditions = *found;
-    if (status >= DALCS_OK) {
+    if (status >= DALCS_OK || status == DALCS_E_NETLIST) { /* where gates do not settle it ends */
         dalcs_diag_forget(&s->diag, &mark);
+        return DALCS_OK;
     }
-    return status < DALCS_OK ? status : DALCS_OK;
+    return status;
 }
 
 enum dalcs_status dalcs_steady_search_from_rest(struct dalcs_steady *st,
