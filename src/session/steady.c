@@ -34,7 +34,29 @@ struct burst {
     int whole;              /* steps of Newton's method in a row */
     int shorter, unhelpful; /* steps */
     bool done;
+    bool is_in_circle;
+
+    struct start {          /* of a step; of those that were shortened */
+        uint64_t signature; /* of the modes behind it */
+        double residual, distance;
+    } from, seen[MOST_SHORTER];
 };
+
+static bool is_alike(double a, double b) {
+    return fabs(a - b) <= dalcs_nothing * fabs(b);
+}
+
+/* Steps go in a circle if an earlier one of the burst that did not help began in the same modes, as far from the orbit: what
+ * has followed it follows again. */
+static void look_for_circle(struct burst *b) {
+    for (int k = 0; k < b->shorter; k++) {
+        const struct start *before = &b->seen[k];
+        b->is_in_circle = b->is_in_circle || (before->signature == b->from.signature &&
+                                              is_alike(before->residual, b->from.residual) &&
+                                              is_alike(before->distance, b->from.distance));
+    }
+    b->seen[b->shorter] = b->from;
+}
 
 /* Plain periods from the end of the last pass: the more, the more often steps have not helped. They lead to where the
  * circuit can be, and to modes that follow each other in the steady state. */
@@ -60,8 +82,9 @@ static enum dalcs_status look_behind(struct dalcs_steady *st, double before, boo
     DALCS_TRY(has_ended ? dalcs_steady_find_helped(st, helped) : DALCS_OK);
     if (!*helped) {
         b->whole = 0;
+        look_for_circle(b);
         b->shorter++;
-        DALCS_TRY(dalcs_steady_shorten(st, helped));
+        DALCS_TRY(b->is_in_circle ? DALCS_OK : dalcs_steady_shorten(st, helped));
         b->done = *helped && is_done(st, before);
     }
     return DALCS_OK;
@@ -71,6 +94,7 @@ static enum dalcs_status look_behind(struct dalcs_steady *st, double before, boo
 static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
     const double before = st->pass.residual;
     bool helped = false;
+    b->from = (struct start){st->pass.signature, before, st->distance};
     dalcs_steady_note_base(st);
     dalcs_steady_take_step(st);
     const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_M);
@@ -80,7 +104,7 @@ static enum dalcs_status try_step(struct dalcs_steady *st, struct burst *b) {
         b->whole++;
         DALCS_TRY(look_behind(st, before, status == DALCS_OK, b, &helped));
     }
-    if (!b->done && !helped) {
+    if (!b->done && !helped && !b->is_in_circle) {
         b->unhelpful++;
         DALCS_TRY(go_on(st, b));
         b->done = is_done(st, INFINITY);
@@ -94,7 +118,7 @@ static enum dalcs_status burst_on(struct dalcs_steady *st, bool *done) {
     bool is_stuck = false; /* where the run has come to: steps may lead to where no run does */
     st->n.bursts++;
     for (int k = 0; !b.done && b.whole < DALCS_STEADY_STEPS && b.shorter < MOST_SHORTER &&
-                    b.unhelpful < MOST_UNHELPFUL;
+                    b.unhelpful < MOST_UNHELPFUL && !b.is_in_circle;
          k++) {
         enum dalcs_status status = dalcs_steady_next_step(st);
         DALCS_TRY(status < DALCS_OK ? status : DALCS_OK);

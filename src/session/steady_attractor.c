@@ -132,6 +132,20 @@ static void find_width(struct follow *f) {
     }
 }
 
+/* Does the run come back to where the first kept point is, from half of the width away or more? What drifts slowly is near
+ * to where it was a period before, and goes on and on; what turns more slowly than the kept points last is not told from
+ * that. */
+static bool turns(const struct follow *f) {
+    bool was_away = false;
+    bool is_back = false;
+    for (int i = 1; i < KEPT && !is_back; i++) {
+        const double away = distance(f, &f->kept[i], &f->kept[0]);
+        is_back = was_away && away <= near_return * f->width;
+        was_away = was_away || away >= 0.5 * f->width;
+    }
+    return is_back;
+}
+
 /* ---- Orbits -------------------------------------------------------------------------------------- */
 
 /* On from st->at by so many periods and those that are kept. */
@@ -252,7 +266,7 @@ static enum dalcs_status tell_apart(struct follow *f, int n, struct dalcs_steady
     const bool is_zero = fabs(g.mean) <= certain * g.deviation;
     if (g.known && !is_zero && is_faster_than_powers(&g)) {
         a->kind = DALCS_STEADY_CHAOS;
-    } else if (g.known && is_zero && f->nearest <= near_return * f->width) {
+    } else if (g.known && is_zero && f->nearest <= near_return * f->width && turns(f)) {
         a->kind = DALCS_STEADY_TORUS;
     } else if (g.known && g.mean < 0.0 && !is_zero) {
         a->kind = DALCS_STEADY_SETTLING;

@@ -122,6 +122,7 @@ static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leav
     DALCS_TRY(found ? DALCS_OK : search_within(st, &found, &endless));
     if (!found && !endless) {
         DALCS_TRY(dalcs_steady_look_ahead(st, &found, &attractor));
+        DALCS_TRY(found ? DALCS_OK : dalcs_steady_search_from_rest(st, &attractor, &found));
         return found ? DALCS_OK : dalcs_steady_tell_failure(st, false, &attractor);
     }
     if (!found) {

@@ -75,4 +75,12 @@ enum dalcs_status dalcs_steady_look_beside(struct dalcs_steady *st) DALCS_MUST_C
 enum dalcs_status dalcs_steady_look_ahead(struct dalcs_steady *st, bool *found,
                                           struct dalcs_steady_attractor *a) DALCS_MUST_CHECK;
 
+/* ---- steady_from_rest.c ------------------------------------------------------------------------ */
+
+/* The search from the operating point has found nothing, and a run from there comes to that: a search from IC= and 0, unless
+ * that was its start, or the run is chaotic. If not *found st is where it was. */
+enum dalcs_status dalcs_steady_search_from_rest(struct dalcs_steady *st,
+                                                const struct dalcs_steady_attractor *a,
+                                                bool *found) DALCS_MUST_CHECK;
+
 #endif
