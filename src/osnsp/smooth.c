@@ -6,6 +6,7 @@
 #include "in_order.h"
 #include "magnitudes.h"
 #include "osnsp_internal.h"
+#include "scales.h"
 #include "smooth_newton.h"
 
 #include <math.h>
@@ -123,22 +124,37 @@ static enum dalcs_status find_slope(struct dalcs_osnsp *p, double *u, const doub
     return DALCS_OK;
 }
 
-/* Is the answer y the same to what can be seen, where source k is off by so much? A circuit at rest is measured by what it
- * was before: of 0 everything would be seen. */
+/* Can be seen that voltages and currents of the answer y move by so much at most? A circuit at rest is measured by what it was
+ * before. Where all of a unit that has been, in y too, is less than it moves by, that is rounding, or 0 of which everything
+ * would be seen: what drives the circuit could raise is the measure then. */
+static bool are_seen(const struct dalcs_osnsp *p, const double *y, const double *moved) {
+    const double *largest = p->smooth.largest;
+    const struct dalcs_scales scale =
+        dalcs_scales_physical(p, dalcs_scales_driving(p, p->smooth.given), y);
+    const double raised[2] = {scale.volt, scale.ampere};
+    bool seen = false;
+    for (int k = 0; k < 2; k++) {
+        const double measure = largest[k] > moved[k] ? largest[k] : raised[k];
+        seen = seen || moved[k] > dalcs_nothing * measure;
+    }
+    return seen;
+}
+
+/* Is the answer y the same to what can be seen, where source k is off by so much? */
 static enum dalcs_status find_shift(struct dalcs_osnsp *p, int k, double off, const double *y,
                                     bool *is_seen) {
     const struct dalcs_system *s = p->system;
-    const double *largest = p->smooth.largest;
+    double moved[2] = {0.0, 0.0};
     bool clash;
     double *u = p->smooth.given;
     put_sources(p, u);
     u[s->n_x + s->smooth[k].input] += off;
     const enum dalcs_status status = dalcs_osnsp_try_mode(p, u, p->smooth.other, &clash);
     for (int c = 0; c < dalcs_system_n_columns(s) && status == DALCS_OK; c++) {
-        const double moved = fabs(p->smooth.other[c] - y[c]);
-        *is_seen = *is_seen ||
-                   (!s->is_part[c] && moved > dalcs_nothing * largest[s->column_is_current[c]]);
+        double *of = &moved[s->column_is_current[c]];
+        *of = s->is_part[c] ? *of : fmax(*of, fabs(p->smooth.other[c] - y[c]));
     }
+    *is_seen = *is_seen || are_seen(p, y, moved);
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
