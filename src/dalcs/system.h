@@ -186,4 +186,8 @@ static inline bool dalcs_system_control_is_current(const struct dalcs_system *s,
 
 void dalcs_system_finish(struct dalcs_system *system);
 
+/* A_rest: sums of entries of A less what they were rounded to. `sums` grows by the latter. */
+enum dalcs_status dalcs_system_find_rest(struct dalcs_system *system,
+                                         struct dalcs_triplets *sums) DALCS_MUST_CHECK;
+
 #endif
