@@ -6,7 +6,9 @@
  * contradicts there goes to its other side, all at once as after one delay, and where that comes round, one by one.
  *
  * A jump that has turned, or has come between its sides, may still have another answer: one in which a latch holds it, or one that
- * it turns on its way. So first all that stood on a side are commanded, and where that comes to rest it is the answer. */
+ * it turns on its way. So first all that stood on a side are commanded, and where that comes to rest it is the answer.
+ *
+ * Where every block of a system is monotone, none holds itself: no principal minor is below 0. */
 #include "latches.h"
 
 #include <math.h>
@@ -17,7 +19,7 @@ enum dalcs_status dalcs_latches_setup(struct dalcs_osnsp *p) {
     struct dalcs_osnsp_latches *l = &p->latches;
     const size_t n_pairs = (size_t)s->n_pairs;
     const size_t words = (size_t)p->n_words;
-    for (int d = 0; d < s->n_pairs; d++) {
+    for (int d = 0; d < s->n_pairs && !dalcs_osnsp_is_monotone(p); d++) {
         l->n += s->pair[d].is_jump ? 1 : 0;
     }
     if (l->n == 0) {
