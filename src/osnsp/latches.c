@@ -190,8 +190,19 @@ static bool are_on_sides(const struct dalcs_osnsp *p, const double *y) {
     return are;
 }
 
-/* All that stood on a side go where the answers have them, as after one delay each time, until none does, or until they come
- * round (Brent). *found: they come to rest. */
+/* Do those that are commanded stand as in this mode? */
+static bool stand_as_in(const struct dalcs_osnsp *p, const uint64_t *mode) {
+    bool are = true;
+    for (int k = 0; k < p->latches.n && are; k++) {
+        const int d = p->latches.jump[k];
+        are = p->lists.is_diode[d] ||
+              (dalcs_mode_has(mode, d) == dalcs_osnsp_is_on(p, d) && !is_between(mode, d));
+    }
+    return are;
+}
+
+/* All that stood on a side go where the answers have them, as after one delay each time, until none does, until they stand as in
+ * the answer kept, or until they come round (Brent). *found: they come to rest in another one. */
 static enum dalcs_status go_by_delays(struct dalcs_osnsp *p, double sigma, const double *u,
                                       double *y, bool *found) {
     *found = false;
@@ -200,20 +211,21 @@ static enum dalcs_status go_by_delays(struct dalcs_osnsp *p, double sigma, const
         const int d = p->latches.jump[k];
         p->lists.is_diode[d] = p->lists.is_diode[d + 1] = is_between(p->mode, d);
     }
+    memcpy(p->latches.met, p->mode, mode_bytes(p));
     for (int round = 1; round <= 2 * (p->latches.n + 1); round++) {
         enum dalcs_status status = dalcs_osnsp_solve_given(p, sigma, u, y);
         if (status != DALCS_OK) {
             return status < DALCS_OK ? status : DALCS_OK;
         }
-        if ((round & (round - 1)) == 0) {
-            memcpy(p->latches.met, p->mode, mode_bytes(p));
-        }
         if (!turn(p, y, true)) {
             *found = are_on_sides(p, y);
             return DALCS_OK;
         }
-        if (memcmp(p->latches.met, p->mode, mode_bytes(p)) == 0) {
+        if (stand_as_in(p, p->latches.met) || stand_as_in(p, p->latches.mode)) {
             return DALCS_OK;
+        }
+        if (round > 1 && (round & (round - 1)) == 0) {
+            memcpy(p->latches.met, p->mode, mode_bytes(p));
         }
     }
     return DALCS_OK;
