@@ -182,7 +182,6 @@ CASES = [
     ("pwr, ngspice", told(PWR, "ngspice"), [], PWR_SIGNED, 0),
     ("powers, nothing said", POWERS, [], POWERS, 1),
     ("powers, ltspice", POWERS, ["--dialect", "ltspice"], POWERS, 0),
-    ("powers, xyce", POWERS, ["--dialect", "xyce"], POWERS, 0),
     ("powers, ngspice", told(POWERS, "ngspice"), [], POWERS_OF_MAGNITUDE, 0),
     ("pwr, ngspice by the command line", PWR, ["--dialect", "ngspice"], PWR_SIGNED, 0),
 ]
