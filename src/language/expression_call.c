@@ -177,7 +177,7 @@ bool dalcs_parser_takes_magnitude(struct dalcs_parser *p, int begin, int length,
     if (is_odd && !c->dialect.is_told && c->noted_pwr != NULL && !*c->noted_pwr) {
         *c->noted_pwr = true;
         dalcs_parser_report(p, DALCS_WARNING, begin, length,
-                            "write pwrs(x, y) for that, or pwr(x, y) for the magnitude's",
+                            "x*x**2 for x**3 is the same everywhere",
                             "an odd power of what is below 0 is below 0, as in LTspice, PSpice and "
                             "Xyce; a source of ngspice takes the power of the magnitude");
     }
