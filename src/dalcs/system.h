@@ -43,6 +43,7 @@ const char *dalcs_label_equation(enum dalcs_label_kind kind);
 
 struct dalcs_pair {
     enum dalcs_pair_kind kind;
+    int valve; /* switches that have one: the pair of a diode in series whose current keeps them closed */
     const char *element; /* "d1", "s1" */
     bool is_breakdown;   /* the reverse branch of a diode with Vrev */
     bool is_formula;     /* a kink or a jump of a source: its lambda carries no charge */
@@ -51,9 +52,8 @@ struct dalcs_pair {
     bool is_left_out[2];      /* while it is open, while it is closed: of a choice of least norm */
     bool initially_on;        /* switches */
     bool is_direct;           /* switches: use direct_control, known before the step is solved */
+    bool has_valve;           /* switches */
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */
-    bool has_valve;           /* switches: a diode in series whose current keeps it closed, ... */
-    int valve;                /* ... its pair */
 };
 
 /* A switch with hysteresis. */
