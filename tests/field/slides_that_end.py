@@ -131,7 +131,7 @@ def check_cut_off(checker, program, volts, limit, unit):
     name = f"cut off, {volts} V, {limit} A, {unit} s"
     netlist = CUT_OFF.format(volts=volts, ron=1e-4 * ohm, roff=roff, limit=limit, coil=unit * ohm, load=load, at=unit, edge=1e-3 * unit,
                              store=store, rest=rest, step=0.05 * unit, stop=10.0 * unit)
-    rows = run(checker, program, name, netlist, 100000)
+    rows = run(checker, program, name, netlist, 50000)
     if rows is None:
         return
     for row in rows:
