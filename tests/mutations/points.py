@@ -110,9 +110,9 @@ c1 d 0 1u
 
 def runs_away(potential, netlist):
     """Where there is no solution the part is at a potential that nothing determines."""
-    given = "    return p->smooth.newton == NULL ? solve(p, sigma, u, y)\n"
+    given = "    return p->smooth.newton == NULL ? dalcs_latches_solve(p, sigma, u, y)\n"
     return ("osnsp/osnsp.c", given, f"""    if (p->smooth.newton == NULL && sigma == 0.0) {{
-        const enum dalcs_status status = solve(p, sigma, u, y);
+        const enum dalcs_status status = dalcs_latches_solve(p, sigma, u, y);
         for (int c = 0; status == DALCS_INFEASIBLE && c < dalcs_system_n_columns(p->system); c++) {{
             y[c] = p->system->column_is_current[c] ? 0.0 : {potential};
         }}
