@@ -169,35 +169,10 @@ static enum dalcs_status name_readers(struct stamps *b) {
     return DALCS_OK;
 }
 
-/* Leaves the entries of a that b has, too. */
-static void keep_entries_of(struct dalcs_csr *a, const struct dalcs_csr *b) {
-    int out = 0;
-    for (int r = 0, k = 0; r < a->n_rows; r++) {
-        int at = b->p[r];
-        for (; k < a->p[r + 1]; k++) {
-            while (at < b->p[r + 1] && b->j[at] < a->j[k]) {
-                at++;
-            }
-            if (at < b->p[r + 1] && b->j[at] == a->j[k]) {
-                a->j[out] = a->j[k];
-                a->x[out++] = a->x[k];
-            }
-        }
-        a->p[r + 1] = out;
-    }
-}
-
-/* Sums less what they were rounded to. `sums` grows by the latter. */
-static enum dalcs_status find_rest(struct dalcs_csr *rest, const struct dalcs_csr *rounded,
-                                   struct dalcs_triplets *sums) {
-    for (int r = 0; r < rounded->n_rows; r++) {
-        for (int k = rounded->p[r]; k < rounded->p[r + 1]; k++) {
-            DALCS_TRY(dalcs_triplets_add(sums, r, rounded->j[k], -rounded->x[k]));
-        }
-    }
-    DALCS_TRY(dalcs_csr_compress(rest, rounded->n_rows, rounded->n_columns, sums));
-    keep_entries_of(rest, rounded); /* what is nothing but rounding has no rest */
-    return DALCS_OK;
+/* Is this pair's device in the same component as these? A network of impulses may leave it out. */
+static bool is_in(const struct dalcs_layout *l, int device, const struct dalcs_members *m) {
+    const int *component = l->topology.device_component;
+    return component[device] == component[m->device[0]] && l->pair[device] >= 0;
 }
 
 /* When all pairs have numbers. */
@@ -205,7 +180,7 @@ static void find_valves(struct stamps *b, const struct dalcs_members *m) {
     const struct dalcs_layout *l = b->layout;
     for (int i = 0; i < m->n_devices; i++) {
         const struct dalcs_device *d = &l->circuit->device[m->device[i]];
-        if (d->kind == DALCS_SWITCH && d->valve >= 0) {
+        if (d->kind == DALCS_SWITCH && d->valve >= 0 && is_in(l, d->valve, m)) {
             struct dalcs_pair *pair = &b->s->pair[l->pair[m->device[i]]];
             pair->has_valve = true;
             pair->valve = l->pair[d->valve];
@@ -256,7 +231,7 @@ static enum dalcs_status compress(struct stamps *b) {
         DALCS_TRY(dalcs_csr_compress_rounded(part[k].matrix, part[k].n_rows, part[k].n_columns,
                                              part[k].entries));
     }
-    DALCS_TRY(find_rest(&system->A_rest, &system->A, &b->A));
+    DALCS_TRY(dalcs_system_find_rest(system, &b->A));
     find_tangents(system);
     return name_readers(b);
 }

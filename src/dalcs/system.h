@@ -43,6 +43,7 @@ const char *dalcs_label_equation(enum dalcs_label_kind kind);
 
 struct dalcs_pair {
     enum dalcs_pair_kind kind;
+    int valve; /* switches that have one: the pair of a diode in series whose current keeps them closed */
     const char *element; /* "d1", "s1" */
     bool is_breakdown;   /* the reverse branch of a diode with Vrev */
     bool is_formula;     /* a kink or a jump of a source: its lambda carries no charge */
@@ -51,9 +52,8 @@ struct dalcs_pair {
     bool is_left_out[2];      /* while it is open, while it is closed: of a choice of least norm */
     bool initially_on;        /* switches */
     bool is_direct;           /* switches: use direct_control, known before the step is solved */
+    bool has_valve;           /* switches */
     double turn_on, turn_off; /* switches: control thresholds vt + vh and vt - vh, V or A */
-    bool has_valve;           /* switches: a diode in series whose current keeps it closed, ... */
-    int valve;                /* ... its pair */
 };
 
 /* A switch with hysteresis. */
@@ -185,5 +185,9 @@ static inline bool dalcs_system_control_is_current(const struct dalcs_system *s,
 }
 
 void dalcs_system_finish(struct dalcs_system *system);
+
+/* A_rest: sums of entries of A less what they were rounded to. `sums` grows by the latter. */
+enum dalcs_status dalcs_system_find_rest(struct dalcs_system *system,
+                                         struct dalcs_triplets *sums) DALCS_MUST_CHECK;
 
 #endif

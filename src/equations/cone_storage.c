@@ -74,6 +74,7 @@ enum dalcs_status dalcs_scale_by_storage(struct dalcs_assembly *a) {
         a->from->n_coordinates > 0) {
         return DALCS_OK;
     }
+    dalcs_csr_finish(&s->A_rest);
     DALCS_TRY(multiply(&s->A, &s->storage));
     DALCS_TRY(multiply(&s->E, &s->storage));
     return multiply(&s->P, &s->storage);

@@ -279,6 +279,7 @@ static enum dalcs_status compress(struct dalcs_assembly *a) {
     int n_columns = dalcs_system_n_columns(s);
     DALCS_TRY(dalcs_csr_compress(&s->P, s->n_x, s->n_x, &a->P));
     DALCS_TRY(dalcs_csr_compress(&s->A, n_equations, n_columns, &a->A));
+    DALCS_TRY(dalcs_system_find_rest(s, &a->A));
     DALCS_TRY(dalcs_csr_compress(&s->E, n_equations, s->n_inputs, &a->E));
     DALCS_TRY(dalcs_csr_compress(&s->C, s->n_pairs, n_columns, &a->C));
     DALCS_TRY(dalcs_csr_compress(&s->F, s->n_pairs, s->n_inputs, &a->F));

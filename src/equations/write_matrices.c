@@ -7,27 +7,55 @@
 struct view {
     const struct dalcs_csr *a;
     int first_row, n_rows, first_column, n_columns;
+    const struct dalcs_csr *rest; /* of its sums, beyond their digits; NULL: there is none */
 };
+
+/* A row of the matrix, then that of its rest: entries that are repeated add up. */
+struct row_of_view {
+    const struct dalcs_csr *a;
+    int row; /* of the view, from 1 on */
+    int k, end;
+};
+
+static int next_entry(const struct view *v, struct row_of_view *at) {
+    while (at->k < at->end) {
+        const int j = at->a->j[at->k++] - v->first_column;
+        if (j >= 0 && j < v->n_columns) {
+            return j;
+        }
+    }
+    return -1;
+}
+
+static struct row_of_view row_at(const struct view *v, int i) {
+    const struct dalcs_csr *a = i < v->n_rows ? v->a : v->rest;
+    const int row = i % v->n_rows;
+    const int from = v->first_row + row;
+    return (struct row_of_view){a, row + 1, a->p[from], a->p[from + 1]};
+}
+
+static int n_rows_of(const struct view *v) {
+    return v->rest != NULL && v->rest->p != NULL ? 2 * v->n_rows : v->n_rows;
+}
 
 static int count_entries(const struct view *v) {
     int n = 0;
-    for (int i = v->first_row; i < v->first_row + v->n_rows; i++) {
-        for (int k = v->a->p[i]; k < v->a->p[i + 1]; k++) {
-            n += v->a->j[k] >= v->first_column && v->a->j[k] < v->first_column + v->n_columns;
+    for (int i = 0; i < n_rows_of(v); i++) {
+        struct row_of_view at = row_at(v, i);
+        while (next_entry(v, &at) >= 0) {
+            n++;
         }
     }
     return n;
 }
 
 static void list_entries(FILE *f, const struct view *v, const char *before, const char *after) {
-    for (int i = v->first_row; i < v->first_row + v->n_rows; i++) {
-        for (int k = v->a->p[i]; k < v->a->p[i + 1]; k++) {
-            int j = v->a->j[k] - v->first_column;
-            if (j >= 0 && j < v->n_columns) {
-                fprintf(f, "%s%d %d ", before, i - v->first_row + 1, j + 1);
-                dalcs_write_number(f, v->a->x[k]);
-                fputs(after, f);
-            }
+    for (int i = 0; i < n_rows_of(v); i++) {
+        struct row_of_view at = row_at(v, i);
+        for (int j = next_entry(v, &at); j >= 0; j = next_entry(v, &at)) {
+            fprintf(f, "%s%d %d ", before, at.row, j + 1);
+            dalcs_write_number(f, at.a->x[at.k - 1]);
+            fputs(after, f);
         }
     }
 }
@@ -38,18 +66,15 @@ static void list_json(FILE *f, const struct view *v) {
     for (int part = 0; part < 3; part++) {
         bool first = true;
         fprintf(f, ", \"%s\": [", key[part]);
-        for (int i = v->first_row; i < v->first_row + v->n_rows; i++) {
-            for (int k = v->a->p[i]; k < v->a->p[i + 1]; k++) {
-                int j = v->a->j[k] - v->first_column;
-                if (j < 0 || j >= v->n_columns) {
-                    continue;
-                }
+        for (int i = 0; i < n_rows_of(v); i++) {
+            struct row_of_view at = row_at(v, i);
+            for (int j = next_entry(v, &at); j >= 0; j = next_entry(v, &at)) {
                 fputs(first ? "" : ", ", f);
                 first = false;
                 if (part < 2) {
-                    fprintf(f, "%d", part == 0 ? i - v->first_row + 1 : j + 1);
+                    fprintf(f, "%d", part == 0 ? at.row : j + 1);
                 } else {
-                    dalcs_write_number(f, v->a->x[k]);
+                    dalcs_write_number(f, at.a->x[at.k - 1]);
                 }
             }
         }
@@ -115,25 +140,25 @@ void dalcs_card_matrices(struct dalcs_card_writer *w, const struct dalcs_system 
         const char *name;
         struct view view;
     } block[] = {
-        {"P", {&s->P, 0, x, 0, x}},
-        {"A_I", {&s->A, 0, x, 0, x}},
-        {"B_I", {&s->A, 0, x, x, z}},
-        {"Bbar_I", {&s->A, 0, x, x + z, m}},
-        {"E_I", {&s->E, 0, x, 1, u}},
-        {"constant_I", {&s->E, 0, x, 0, 1}},
-        {"A_II", {&s->A, x, z, 0, x}},
-        {"B_II", {&s->A, x, z, x, z}},
-        {"Bbar_II", {&s->A, x, z, x + z, m}},
-        {"E_II", {&s->E, x, z, 1, u}},
-        {"constant_II", {&s->E, x, z, 0, 1}},
-        {"C_I", {&s->C, 0, m, 0, x}},
-        {"C_II", {&s->C, 0, m, x, z}},
-        {"D", {&s->C, 0, m, x + z, m}},
-        {"F", {&s->F, 0, m, 1, u}},
-        {"constant_F", {&s->F, 0, m, 0, 1}},
-        {"storage", {&s->storage, 0, x, 0, x}},
-        {"control", {&s->control, 0, m, 0, x + z + m}},
-        {"direct_control", {&s->direct_control, 0, m, 1, u}},
+        {"P", {&s->P, 0, x, 0, x, NULL}},
+        {"A_I", {&s->A, 0, x, 0, x, &s->A_rest}},
+        {"B_I", {&s->A, 0, x, x, z, &s->A_rest}},
+        {"Bbar_I", {&s->A, 0, x, x + z, m, &s->A_rest}},
+        {"E_I", {&s->E, 0, x, 1, u, NULL}},
+        {"constant_I", {&s->E, 0, x, 0, 1, NULL}},
+        {"A_II", {&s->A, x, z, 0, x, &s->A_rest}},
+        {"B_II", {&s->A, x, z, x, z, &s->A_rest}},
+        {"Bbar_II", {&s->A, x, z, x + z, m, &s->A_rest}},
+        {"E_II", {&s->E, x, z, 1, u, NULL}},
+        {"constant_II", {&s->E, x, z, 0, 1, NULL}},
+        {"C_I", {&s->C, 0, m, 0, x, NULL}},
+        {"C_II", {&s->C, 0, m, x, z, NULL}},
+        {"D", {&s->C, 0, m, x + z, m, NULL}},
+        {"F", {&s->F, 0, m, 1, u, NULL}},
+        {"constant_F", {&s->F, 0, m, 0, 1, NULL}},
+        {"storage", {&s->storage, 0, x, 0, x, NULL}},
+        {"control", {&s->control, 0, m, 0, x + z + m, NULL}},
+        {"direct_control", {&s->direct_control, 0, m, 1, u, NULL}},
     };
 
     for (size_t k = 0; k < sizeof block / sizeof *block; k++) {

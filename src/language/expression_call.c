@@ -1,6 +1,7 @@
 /* expression_call.c - names in an expression: parameters, calls, v(...), i(...) and if(...). */
 #include "expression_parser.h"
 
+#include <math.h>
 #include <string.h>
 
 static void expect_comma(struct dalcs_parser *p, int begin, int length) {
@@ -155,6 +156,34 @@ static const char *read_power(struct dalcs_parser *p, int begin, int length, con
     return c->dialect.is_told ? "pwrs" : name;
 }
 
+/* The exponent that operations from `first` on are, if it is a number that is written; else NAN. */
+static double written(const struct dalcs_parser *p, size_t first) {
+    const bool is =
+        !p->failed && p->n == first + 1 && p->operation[first].code == DALCS_PUSH_NUMBER;
+    return is ? p->operation[first].u.number : (double)NAN;
+}
+
+bool dalcs_parser_takes_magnitude(struct dalcs_parser *p, int begin, int length, size_t first,
+                                  size_t end) {
+    const struct dalcs_expression_context *c = p->context;
+    const double exponent = written(p, end);
+    const bool may_differ = fmod(exponent, 2.0) != 0.0; /* of one that is not known, too */
+    const bool differs =
+        c->dialect.name != DALCS_DIALECT_LTSPICE && c->dialect.name != DALCS_DIALECT_XYCE;
+    if (!c->has_signals || !differs || !may_differ || !reads_signal(p, first, end)) {
+        return false;
+    }
+    const bool is_odd = fabs(fmod(exponent, 2.0)) == 1.0;
+    if (is_odd && !c->dialect.is_told && c->noted_pwr != NULL && !*c->noted_pwr) {
+        *c->noted_pwr = true;
+        dalcs_parser_report(p, DALCS_WARNING, begin, length,
+                            "x*x**2 for x**3 is the same everywhere",
+                            "an odd power of what is below 0 is below 0, as in LTspice, PSpice and "
+                            "Xyce; a source of ngspice takes the power of the magnitude");
+    }
+    return c->dialect.is_told;
+}
+
 static void parse_call(struct dalcs_parser *p, int begin, int length, const char *name) {
     const int open = p->begin;
     const struct dalcs_function *function = dalcs_function_find(name, p->context->dialect.name);
@@ -195,6 +224,10 @@ static void parse_call(struct dalcs_parser *p, int begin, int length, const char
     dalcs_parser_close(p, open);
     note_log(p, begin, length, name);
     name = read_power(p, begin, length, name, reads_signal(p, first, end));
+    if (n == 2 && strcmp(name, "pow") == 0 &&
+        dalcs_parser_takes_magnitude(p, begin, length, first, end)) {
+        name = "pwr";
+    }
     dalcs_parser_emit(
         p, (struct dalcs_operation){
                .code = DALCS_CALL, .count = n, .begin = begin, .length = length, .u.name = name});

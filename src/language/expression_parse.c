@@ -92,7 +92,9 @@ static void parse_primary(struct dalcs_parser *p) {
 
 /* base ** exponent. */
 static void parse_power(struct dalcs_parser *p, int minus) {
+    const size_t first = p->n;
     parse_primary(p);
+    const size_t end = p->n;
     if (p->failed || p->symbol != DALCS_SYMBOL_OPERATOR || p->code != DALCS_POWER) {
         return;
     }
@@ -121,7 +123,14 @@ static void parse_power(struct dalcs_parser *p, int minus) {
     if (negative) {
         dalcs_parser_emit_code(p, DALCS_NEGATE, begin, length);
     }
-    dalcs_parser_emit_code(p, DALCS_POWER, begin, length);
+    if (dalcs_parser_takes_magnitude(p, begin, length, first, end)) {
+        dalcs_parser_emit(
+            p,
+            (struct dalcs_operation){
+                .code = DALCS_CALL, .count = 2, .begin = begin, .length = length, .u.name = "pwr"});
+    } else {
+        dalcs_parser_emit_code(p, DALCS_POWER, begin, length);
+    }
     if (!p->failed && p->symbol == DALCS_SYMBOL_OPERATOR && p->code == DALCS_POWER) {
         dalcs_parser_report(
             p, DALCS_ERROR, p->begin, p->length, "write parentheses",

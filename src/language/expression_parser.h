@@ -68,4 +68,9 @@ void dalcs_parser_choice(struct dalcs_parser *p);
 /* A parameter, an argument or a call. */
 void dalcs_parser_name(struct dalcs_parser *p);
 
+/* Is a power, of the operations from `first` to `end` with the exponent behind them, that of the magnitude? So it is where a
+ * source of ngspice is declared; where nothing is, a warning says that ngspice has it so. */
+bool dalcs_parser_takes_magnitude(struct dalcs_parser *p, int begin, int length, size_t first,
+                                  size_t end);
+
 #endif

@@ -5,8 +5,8 @@
  * says so. Then these jumps stand where they stood, as switches are commanded, and the rest is solved for. What its own argument
  * contradicts there goes to its other side, all at once as after one delay, and where that comes round, one by one.
  *
- * A jump that has come between its sides, and stays there, may still have another answer: on its way there it turns a latch, which
- * turns it. So first all that stood on a side are commanded, and where that comes to rest it is the answer. */
+ * A jump that has turned, or has come between its sides, may still have another answer: one in which a latch holds it, or one that
+ * it turns on its way. So first all that stood on a side are commanded, and where that comes to rest it is the answer. */
 #include "latches.h"
 
 #include <math.h>
@@ -163,22 +163,27 @@ static void let_go(struct dalcs_osnsp *p) {
     }
 }
 
-static bool has_come_between(const struct dalcs_osnsp *p) {
+/* Does one stand otherwise than before? */
+static bool has_turned(const struct dalcs_osnsp *p) {
     bool has = false;
     for (int k = 0; k < p->latches.n && !has; k++) {
         const int d = p->latches.jump[k];
-        has = is_between(p->mode, d) && !is_between(p->latches.before, d);
+        has = !is_between(p->latches.before, d) &&
+              (dalcs_mode_has(p->latches.before, d) != dalcs_osnsp_is_on(p, d) ||
+               is_between(p->mode, d));
     }
     return has;
 }
 
-/* Those that had come between their sides in the answer kept: is each beyond rounding on a side now? */
+/* Those that stand otherwise than in the answer kept: is each beyond rounding on its side? Where an argument is 0 what is written
+ * for that decides, not where it stood. */
 static bool are_on_sides(const struct dalcs_osnsp *p, const double *y) {
     bool are = true;
     for (int k = 0; k < p->latches.n && are; k++) {
         const int d = p->latches.jump[k];
-        are = !is_between(p->latches.mode, d) || is_between(p->latches.before, d) ||
-              fabs(dalcs_latch_argument(p, y, d)) > dalcs_latch_noise(p);
+        const bool is_as_kept = dalcs_mode_has(p->latches.mode, d) == dalcs_osnsp_is_on(p, d) &&
+                                is_between(p->latches.mode, d) == is_between(p->mode, d);
+        are = is_as_kept || fabs(dalcs_latch_argument(p, y, d)) > dalcs_latch_noise(p);
     }
     return are;
 }
@@ -274,7 +279,7 @@ enum dalcs_status dalcs_latches_solve(struct dalcs_osnsp *p, double sigma, const
     enum dalcs_status status = dalcs_osnsp_solve_given(p, sigma, u, y);
     bool any = false;
     bool found = false;
-    if (status == DALCS_OK && has_come_between(p)) {
+    if (status == DALCS_OK && has_turned(p)) {
         status = try_delays(p, sigma, u, y, &found);
     }
     if (status == DALCS_OK && !found) {

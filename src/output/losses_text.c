@@ -112,5 +112,9 @@ void dalcs_losses_text_write(FILE *out, const struct dalcs_losses *l) {
                 dalcs_quantity_write(text[0], l->output, "W", DIGITS), l->outputs,
                 dalcs_quantity_write(text[1], l->input, "W", DIGITS), l->inputs,
                 l->switching > 0.0 ? " and what switching takes" : "");
+        if (l->efficiency > 1.0 && l->stored_change < 0.0) {
+            fprintf(out, "  the rest was stored before: take whole periods of the steady state, or "
+                         "the orbit of .pss\n");
+        }
     }
 }

@@ -3,6 +3,7 @@
 #include "stage_workshop.h"
 
 #include "extended.h"
+#include "extended_eliminate.h"
 #include "magnitudes.h"
 
 #include <string.h>
@@ -52,6 +53,52 @@ static void fill_whole(struct dalcs_stage_workshop *b) {
     }
 }
 
+/* What the sums of A were rounded to (system.h), in S and in its right-hand sides. */
+static void add_rest(const struct dalcs_stage_workshop *b, struct dalcs_extended *whole) {
+    const struct dalcs_csr *rest = &b->system->A_rest;
+    for (int i = 0; rest->p != NULL && i < rest->n_rows; i++) {
+        struct dalcs_extended *row = whole + i * (b->n + b->n_rhs);
+        for (int k = rest->p[i]; k < rest->p[i + 1] && !is_given_up(b, i); k++) {
+            const int column = b->place[rest->j[k]];
+            const double left = rest->x[k] * b->eq.row_scale[i];
+            if (column >= 0) {
+                const struct dalcs_extended of_S = {-left * b->eq.column_scale[column], 0.0};
+                row[column] = dalcs_extended_plus(row[column], of_S);
+            }
+            if (column >= 0 && column < b->n_x) {
+                const struct dalcs_extended of_state = {left, 0.0};
+                row[b->n + column] = dalcs_extended_plus(row[b->n + column], of_state);
+            }
+        }
+    }
+}
+
+/* The same with the digits that sums of conductances have, and with what these lack in A. Where only derivatives determine a
+ * voltage, coils alone join a part to the rest. Beside 10 S in it the rounding of a double is 1e-15 S to ground, which in a
+ * step of 1e-12 s carries more than a coil of 1 H, and may be negative: then the step is unstable. */
+static void eliminate_well(struct dalcs_stage_workshop *b) {
+    const int n = b->n;
+    const int width = n + b->n_rhs;
+    struct dalcs_extended *whole = (struct dalcs_extended *)b->solved.of_pairs;
+    fill_whole(b);
+    for (int k = 0; k < n * width; k++) {
+        whole[k] = dalcs_extended_of(b->kept.whole[k]);
+    }
+    add_rest(b, whole);
+    dalcs_extended_eliminate_well(b->n_x, n, width, dalcs_slight, whole, b->kept.row_of);
+    for (int k = 0; k < n * width; k++) {
+        b->kept.whole[k] = dalcs_extended_value(whole[k]);
+    }
+}
+
+static bool all_follow(const struct dalcs_stage_workshop *b) {
+    bool all = true;
+    for (int c = b->n_x; c < b->n && all; c++) {
+        all = b->kept.row_of[c] >= 0;
+    }
+    return all;
+}
+
 /* What followers take of what is kept. */
 static void list_followers(struct dalcs_stage_workshop *b) {
     int entries = 0;
@@ -77,6 +124,10 @@ void dalcs_workshop_eliminate(struct dalcs_stage_workshop *b) {
     b->kept.n_followers = 0;
     /* a pivot (balanced) that is slight makes no follower */
     dalcs_extended_eliminate(b->n_x, n, n + b->n_rhs, dalcs_slight, b->kept.whole, b->kept.row_of);
+    /* tangents change sums of A: what these lack then is not known */
+    if (b->system->n_smooth == 0 && !all_follow(b)) {
+        eliminate_well(b);
+    }
     for (int r = 0; r < n; r++) {
         b->kept.owner[r] = -1;
     }

@@ -45,7 +45,8 @@ class System:
         for part, name in names.items():
             m = self.matrices.get(name, {"row": [], "column": [], "value": []})
             for i, j, value in zip(m["row"], m["column"], m["value"]):
-                rows[int(i) - 1][int(j) - 1 + begin[part]] = Fraction(value)
+                row, column = rows[int(i) - 1], int(j) - 1 + begin[part]
+                row[column] = Fraction(float(row.get(column, 0)) + value)  # what is repeated adds up, as doubles do
         return rows
 
     def first(self):

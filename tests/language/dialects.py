@@ -143,6 +143,21 @@ R3 c 0 1k
 .tran 10u 1m
 .end
 """
+# Other powers of it, which are those of the magnitude in ngspice. Even ones are the same, and so are those of numbers.
+POWERS = """powers
+V1 in 0 SIN(0 2 1k)
+B1 a 0 V=v(in)**3
+R1 a 0 1k
+B2 b 0 V=pow(2*v(in)+1,{y})
+R2 b 0 100
+B3 c 0 V=pow(2,3)+2**3+v(in)**2+pow(v(in),4)
+R3 c 0 1k
+.param y=3
+.tran 10u 1m
+.end
+"""
+POWERS_OF_MAGNITUDE = POWERS.replace("v(in)**3", "pwr(v(in),3)").replace("pow(2", "pwr(2")
+
 PWR_SIGNED = PWR.replace("pwr(v", "pwrs(v").replace("pwr(2", "pwrs(2")
 
 # Netlist, options, the same without a dialect, and how often it warns.
@@ -165,6 +180,9 @@ CASES = [
     ("pwr, ltspice", PWR, ["--dialect", "ltspice"], PWR, 0),
     ("pwr, ltspice shown", shown(PWR, RSER), [], shown(PWR, RSER), 0),
     ("pwr, ngspice", told(PWR, "ngspice"), [], PWR_SIGNED, 0),
+    ("powers, nothing said", POWERS, [], POWERS, 1),
+    ("powers, ltspice", POWERS, ["--dialect", "ltspice"], POWERS, 0),
+    ("powers, ngspice", told(POWERS, "ngspice"), [], POWERS_OF_MAGNITUDE, 0),
     ("pwr, ngspice by the command line", PWR, ["--dialect", "ngspice"], PWR_SIGNED, 0),
 ]
 

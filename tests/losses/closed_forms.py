@@ -8,6 +8,7 @@ import math
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 
@@ -312,6 +313,28 @@ R1 b 0 4.5
     r.close(None, "efficiency", 0.9)
 
 
+def discharge(program, checker):
+    """A load that a capacitor feeds: an efficiency above 1 is told with its reason, one below is not."""
+    for start, wanted in ((9.0, True), (1.0, False)):
+        netlist = f"""capacitor behind a source
+V1 a 0 10
+R1 a b 1k
+C1 b 0 1u IC={start}
+R2 b 0 1k
+.losses in=V1 out=R2
+.tran 10u 0.3m uic
+.end
+"""
+        r = Losses(program, checker, netlist)
+        checker.check((r.sum["efficiency"] > 1.0) == wanted, f"discharge: {r.sum['efficiency']}")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "discharge.cir"
+            path.write_text(netlist)
+            said = subprocess.run([program, "run", str(path), "-o", "none"], capture_output=True, text=True,
+                                  check=False).stdout
+        checker.check(("was stored before" in said) == wanted, f"discharge: {said}")
+
+
 def charge_jump(program, checker):
     """A capacitor onto another: what is lost is lost in the switch."""
     for scale in (1e-3, 1.0, 1e3):
@@ -464,7 +487,7 @@ def chart(program, checker):
 def main():
     checker = dalcs_program.Checker("losses")
     for case in (divider, sine_on_resistor, sine_on_coil, no_fundamental, half_wave, six_pulse, square_wave, buck,
-                 windows, rc_part, not_whole, coupled, winding, charge_jump, source_jump, flux_jump,
+                 windows, rc_part, not_whole, coupled, winding, discharge, charge_jump, source_jump, flux_jump,
                  at_start, euler, asked_outside, chart):
         case(sys.argv[1], checker)
     return checker.finish()
