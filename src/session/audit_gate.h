@@ -45,6 +45,9 @@ bool audit_gate_reads_another(const struct dalcs_audit_gates *a, int k);
 /* The stimulus of its pin; -1: it has none. */
 int audit_gate_shown_by(const struct dalcs_logic_gate *g);
 
+/* Do its pins show one bit, at its levels, and went there in the time that its ramps take? */
+bool audit_gate_is_written(const struct dalcs_audit_gates *a, int k);
+
 /* *is_known: not what a gate says that nothing shows. */
 bool audit_gate_reads(const struct dalcs_audit_gates *a, const struct dalcs_logic_input *input,
                       bool *is_known);

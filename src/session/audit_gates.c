@@ -288,6 +288,7 @@ static enum dalcs_status look_again(struct dalcs_audit_gates *a, struct dalcs_au
         is_wrong = is_sample_wrong(a, k);
     } else {
         DALCS_TRY(look_at(a, k, t, &is_wrong));
+        is_wrong = is_wrong || !audit_gate_is_written(a, k);
     }
     if (is_wrong && g->device >= 0) {
         dalcs_audit_add_position(audit, g->device, 1.0, t);

@@ -3,6 +3,8 @@
 
 #include "radau.h"
 
+#include <math.h>
+
 int audit_gate_shown_by(const struct dalcs_logic_gate *g) {
     return g->output[0] >= 0 ? g->output[0] : g->output[1];
 }
@@ -44,6 +46,36 @@ static bool shows(const struct dalcs_audit_gates *a, const struct dalcs_logic_ga
     const struct dalcs_stimulus *s = pin >= 0 ? &a->circuit->stimulus[pin] : NULL;
     return s != NULL &&
            (s->u.pwl.v[s->u.pwl.n - 1] > 0.5 * (g->low + g->high)) == (g->output[0] >= 0);
+}
+
+/* Is each pin at its level of the bit that the first one shows? */
+static bool are_levels(const struct dalcs_audit_gates *a, const struct dalcs_logic_gate *g,
+                       bool says) {
+    bool are = true;
+    for (int pin = 0; pin < 2 && g->kind != DALCS_GATE_SAMPLE; pin++) {
+        if (g->output[pin] >= 0) {
+            const struct dalcs_stimulus *s = &a->circuit->stimulus[g->output[pin]];
+            are = are && s->u.pwl.v[s->u.pwl.n - 1] == (says == (pin == 0) ? g->high : g->low);
+        }
+    }
+    return are;
+}
+
+bool audit_gate_is_written(const struct dalcs_audit_gates *a, int k) {
+    const struct dalcs_logic_gate *g = &a->circuit->control.gate[k];
+    bool is = are_levels(a, g, a->says[k]);
+    for (int pin = 0; pin < 2; pin++) {
+        const struct dalcs_stimulus *s =
+            g->output[pin] >= 0 ? &a->circuit->stimulus[g->output[pin]] : NULL;
+        if (s != NULL && s->u.pwl.n > 1) {
+            const double *t = &s->u.pwl.t[s->u.pwl.n - 2];
+            const double *v = &s->u.pwl.v[s->u.pwl.n - 2];
+            const double whole = v[1] == g->high ? g->rise : g->fall;
+            const double lasts = whole * fabs(v[1] - v[0]) / (g->high - g->low);
+            is = is && !(fabs(t[1] - t[0] - lasts) > 4.0 * a->radau->resolution);
+        }
+    }
+    return is;
 }
 
 bool audit_gates_read(struct dalcs_audit_gates *a) {

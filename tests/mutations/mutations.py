@@ -191,11 +191,11 @@ a7 c 0 a 0 0 0 held 0 SAMPLEHOLD
 a8 x 0 0 b 0 0 let 0 SAMPLEHOLD
 aadc [a b c] [da db dc] adc
 .model adc adc_bridge(in_low=0.2 in_high=0.8)
-aflip da db dc null q nq flip
+aflip da db dc null null q nq flip
 .model flip d_jkff(clk_delay=20n)
-adac q slow dac
+adac [q nq] [slow slower] dac
 .model dac dac_bridge(out_high=3)
-r6 slow 0 1k
+r6 slow slower 1k
 r1 any x 1k
 c1 x 0 1n ic=0
 r2 flop 0 1k
@@ -435,8 +435,8 @@ MUTATIONS = {
     "a counter counts one too many": (
         "logic/logic_network.c", "state->count % g->cycles + 1", "state->count % (g->cycles + 1) + 1", GATES),
     "one sample of many takes a hundredth more": (
-        "logic/logic_outputs.c", "        l->changed[g->output[0]] = true;\n",
-        "        l->changed[g->output[0]] = true;\n        " + once(17, "", "l->taken[k] *= 1.01;") + "\n", GATES),
+        "logic/logic_outputs.c", "        dalcs_logic_effect_note(l, g->output[0]);\n",
+        "        dalcs_logic_effect_note(l, g->output[0]);\n        " + once(17, "", "l->taken[k] *= 1.01;") + "\n", GATES),
     "a sample forgets what it let through": (
         "logic/logic_network.c", "(state->q && !tracks && !l->rests)", "false", GATES),
     "a delay is a tenth longer": (
@@ -446,6 +446,12 @@ MUTATIONS = {
     "one output of many shows the other level": (
         "logic/logic_outputs.c", "const double level = level_of(g, pin, l->network.state[k].seen);",
         "static long calls_; const double level = level_of(g, pin, l->network.state[k].seen != (++calls_ == 37));", GATES),
+    "a complement is no complement": (
+        "logic/logic_outputs.c", "return q == (pin == 0) ? g->high : g->low;", "return q ? g->high : g->low;", GATES),
+    "a level of gates is a millionth too low": (
+        "logic/logic_outputs.c", "(pin == 0) ? g->high : g->low;", "(pin == 0) ? 0.999999 * g->high : g->low;", GATES),
+    "ramps of gates take a hundredth longer": (
+        "logic/logic_outputs.c", "? g->rise : g->fall, g->high", "? 1.01 * g->rise : g->fall, g->high", GATES),
     "a smooth function is too steep by 1e-5": (
         "dalcs/stamp_behaviour.c", "    return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.0);",
         "    return dalcs_triplets_add(&b->E, l->branch_row[device], input, -1.00001);", SATURABLE),
