@@ -124,7 +124,8 @@ void dalcs_workshop_eliminate(struct dalcs_stage_workshop *b) {
     b->kept.n_followers = 0;
     /* a pivot (balanced) that is slight makes no follower */
     dalcs_extended_eliminate(b->n_x, n, n + b->n_rhs, dalcs_slight, b->kept.whole, b->kept.row_of);
-    if (!all_follow(b)) {
+    /* tangents change sums of A: what these lack then is not known */
+    if (b->system->n_smooth == 0 && !all_follow(b)) {
         eliminate_well(b);
     }
     for (int r = 0; r < n; r++) {
