@@ -207,12 +207,13 @@ void audit_check_obeyed(struct dalcs_audit *audit, struct audit_part *part,
     for (int k = 0; k < part->n_devices; k++) {
         const int device = part->device[k];
         const double off = stays_against(audit, part, begin, end, device);
-        const double scale = audit_control_scale(audit, part, device);
         if (device == before) {
             find_against(audit, part, end, device, off);
         }
-        if (audit_ratio(off, scale) > most) {
-            most = audit_ratio(off, scale);
+        const double ratio =
+            off > 0.0 ? audit_ratio(off, audit_control_scale(audit, part, device)) : 0.0;
+        if (ratio > most) {
+            most = ratio;
             part->at.against = device + 1;
         }
     }
