@@ -21,15 +21,17 @@ static double short_of(const struct dalcs_audit *audit, const struct dalcs_audit
 static double short_of_change(const struct dalcs_audit *audit, const struct audit_part *part,
                               const struct dalcs_audit_state *before, int device, bool closes) {
     const int valve = audit->circuit->device[device].valve;
-    const double off = short_of(audit, before, device, closes);
-    double half_width;
-    const double control = audit_control(audit, before, device, &half_width);
     double scale[2];
     if (closes || valve < 0) {
-        return off;
+        return short_of(audit, before, device, closes);
     }
     audit_diode_scale(audit, part, valve, scale);
-    return fabs(before->i[valve]) <= part->tolerance * scale[1] ? control - half_width : off;
+    if (fabs(before->i[valve]) > part->tolerance * scale[1]) {
+        return short_of(audit, before, device, closes);
+    }
+    double half_width;
+    const double control = audit_control(audit, before, device, &half_width);
+    return control - half_width;
 }
 
 /* ---- Causes -------------------------------------------------------------------------------------- */

@@ -21,11 +21,8 @@ static struct file_number of_current(const struct file_audit *a, const struct fi
 /* One that blocks and has no conductance carries nothing; the file may say that it carries a little. */
 static struct file_number of_pair(const struct file_audit *a, const struct file_row *row,
                                   int device) {
-    const struct dalcs_device *d = &a->circuit->device[device];
-    const double roff = d->kind == DALCS_DIODE ? a->circuit->models.of_diode[d->model].roff
-                                               : a->circuit->models.of_switch[d->model].roff;
     struct file_number flow = {0};
-    if (!isfinite(roff)) {
+    if (!isfinite(dalcs_device_roff(a->circuit, &a->circuit->device[device]))) {
         flow = file_blocked(a, row, device);
         flow.error += a->promise.tolerance * a->scale.i[device];
     }

@@ -137,23 +137,21 @@ static bool reads_signal(const struct dalcs_parser *p, size_t first, size_t end)
     return reads;
 }
 
-/* Of a voltage or a current, pwr(x, y) has the sign of x in ngspice, and in no other simulator. */
-static const char *read_power(struct dalcs_parser *p, int begin, int length, const char *name,
-                              bool of_signal) {
+/* May powers of signals be those of ngspice, which are others? */
+static bool may_be_of_ngspice(const struct dalcs_parser *p) {
     const struct dalcs_expression_context *c = p->context;
-    const bool differs =
-        c->dialect.name != DALCS_DIALECT_LTSPICE && c->dialect.name != DALCS_DIALECT_XYCE;
-    if (!c->has_signals || !differs || strcmp(name, "pwr") != 0) {
-        return name;
-    }
-    if (of_signal && !c->dialect.is_told && c->noted_pwr != NULL && !*c->noted_pwr) {
+    return c->has_signals && c->dialect.name != DALCS_DIALECT_LTSPICE &&
+           c->dialect.name != DALCS_DIALECT_XYCE;
+}
+
+/* Once, and not where ngspice is declared. */
+static void warn_of_ngspice(struct dalcs_parser *p, int begin, int length, const char *hint,
+                            const char *message) {
+    const struct dalcs_expression_context *c = p->context;
+    if (!c->dialect.is_told && c->noted_pwr != NULL && !*c->noted_pwr) {
         *c->noted_pwr = true;
-        dalcs_parser_report(p, DALCS_WARNING, begin, length,
-                            "write pwrs(x, y) for that, or pwr(abs(x), y)",
-                            "pwr(x, y) is abs(x)**y, as in LTspice, PSpice and Xyce; a source of "
-                            "ngspice gives it the sign of x");
+        dalcs_parser_report(p, DALCS_WARNING, begin, length, hint, "%s", message);
     }
-    return c->dialect.is_told ? "pwrs" : name;
 }
 
 /* The exponent that operations from `first` on are, if it is a number that is written; else NAN. */
@@ -165,23 +163,34 @@ static double written(const struct dalcs_parser *p, size_t first) {
 
 bool dalcs_parser_takes_magnitude(struct dalcs_parser *p, int begin, int length, size_t first,
                                   size_t end) {
-    const struct dalcs_expression_context *c = p->context;
-    const double exponent = written(p, end);
-    const bool may_differ = fmod(exponent, 2.0) != 0.0; /* of one that is not known, too */
-    const bool differs =
-        c->dialect.name != DALCS_DIALECT_LTSPICE && c->dialect.name != DALCS_DIALECT_XYCE;
-    if (!c->has_signals || !differs || !may_differ || !reads_signal(p, first, end)) {
+    const double past_even = fmod(written(p, end), 2.0); /* NAN: it may be */
+    if (!may_be_of_ngspice(p) || past_even == 0.0 || !reads_signal(p, first, end)) {
         return false;
     }
-    const bool is_odd = fabs(fmod(exponent, 2.0)) == 1.0;
-    if (is_odd && !c->dialect.is_told && c->noted_pwr != NULL && !*c->noted_pwr) {
-        *c->noted_pwr = true;
-        dalcs_parser_report(p, DALCS_WARNING, begin, length,
-                            "x*x**2 for x**3 is the same everywhere",
-                            "an odd power of what is below 0 is below 0, as in LTspice, PSpice and "
-                            "Xyce; a source of ngspice takes the power of the magnitude");
+    if (fabs(past_even) == 1.0) {
+        warn_of_ngspice(p, begin, length, "x*x**2 for x**3 is the same everywhere",
+                        "an odd power of what is below 0 is below 0, as in LTspice, PSpice and "
+                        "Xyce; a source of ngspice takes the power of the magnitude");
     }
-    return c->dialect.is_told;
+    return p->context->dialect.is_told;
+}
+
+/* Of a voltage or a current, pow(x, y) is that of the magnitude in ngspice and pwr(x, y) has the sign of x, and in no other
+ * simulator. */
+static const char *read_power(struct dalcs_parser *p, int begin, int length, const char *name,
+                              size_t first, size_t end) {
+    if (strcmp(name, "pow") == 0) {
+        return dalcs_parser_takes_magnitude(p, begin, length, first, end) ? "pwr" : name;
+    }
+    if (strcmp(name, "pwr") != 0 || !may_be_of_ngspice(p)) {
+        return name;
+    }
+    if (reads_signal(p, first, end)) {
+        warn_of_ngspice(p, begin, length, "write pwrs(x, y) for that, or pwr(abs(x), y)",
+                        "pwr(x, y) is abs(x)**y, as in LTspice, PSpice and Xyce; a source of "
+                        "ngspice gives it the sign of x");
+    }
+    return p->context->dialect.is_told ? "pwrs" : name;
 }
 
 static void parse_call(struct dalcs_parser *p, int begin, int length, const char *name) {
@@ -223,11 +232,7 @@ static void parse_call(struct dalcs_parser *p, int begin, int length, const char
     }
     dalcs_parser_close(p, open);
     note_log(p, begin, length, name);
-    name = read_power(p, begin, length, name, reads_signal(p, first, end));
-    if (n == 2 && strcmp(name, "pow") == 0 &&
-        dalcs_parser_takes_magnitude(p, begin, length, first, end)) {
-        name = "pwr";
-    }
+    name = n == 2 ? read_power(p, begin, length, name, first, end) : name;
     dalcs_parser_emit(
         p, (struct dalcs_operation){
                .code = DALCS_CALL, .count = n, .begin = begin, .length = length, .u.name = name});

@@ -231,18 +231,29 @@ static enum dalcs_status go_by_delays(struct dalcs_osnsp *p, double sigma, const
     return DALCS_OK;
 }
 
+/* A way to another answer, in which some are commanded. *found: there is one. */
+typedef enum dalcs_status way(struct dalcs_osnsp *p, double sigma, const double *u, double *y,
+                              bool *found);
+
+/* Goes it. Behind it none is commanded. */
+static enum dalcs_status go(struct dalcs_osnsp *p, way *how, double sigma, const double *u,
+                            double *y, bool *found) {
+    const int n_blocks = p->partition.n_blocks;
+    p->partition.n_blocks = 1; /* blocks would not command them */
+    const enum dalcs_status status = how(p, sigma, u, y, found);
+    let_go(p);
+    p->partition.n_blocks = n_blocks;
+    return status;
+}
+
 /* y: an answer in which some have come between their sides. It stays where delays do not come to rest in another one. */
 static enum dalcs_status try_delays(struct dalcs_osnsp *p, double sigma, const double *u, double *y,
                                     bool *found) {
     const size_t bytes = (size_t)dalcs_system_n_columns(p->system) * sizeof(*y);
-    const int n_blocks = p->partition.n_blocks;
     struct kept_answer kept;
     keep_answer(p, &kept);
     memcpy(p->latches.kept_y, y, bytes);
-    p->partition.n_blocks = 1; /* blocks would not command them */
-    enum dalcs_status status = go_by_delays(p, sigma, u, y, found);
-    let_go(p);
-    p->partition.n_blocks = n_blocks;
+    const enum dalcs_status status = go(p, go_by_delays, sigma, u, y, found);
     if (status == DALCS_OK && !*found) {
         put_answer_back(p, &kept);
         memcpy(y, p->latches.kept_y, bytes);
@@ -271,12 +282,8 @@ static void find_before(struct dalcs_osnsp *p) {
 /* y: an answer in which some that hold themselves are between their sides. It stays where no other one is found. */
 static enum dalcs_status settle_from(struct dalcs_osnsp *p, double sigma, const double *u,
                                      double *y) {
-    const int n_blocks = p->partition.n_blocks;
     bool found;
-    p->partition.n_blocks = 1; /* blocks would not command them */
-    enum dalcs_status status = settle(p, sigma, u, y, &found);
-    let_go(p);
-    p->partition.n_blocks = n_blocks;
+    enum dalcs_status status = go(p, settle, sigma, u, y, &found);
     if (status == DALCS_OK && !found) {
         memcpy(p->mode, p->latches.before, mode_bytes(p));
         status = dalcs_osnsp_solve_given(p, sigma, u, y);
