@@ -30,10 +30,10 @@ static void ask_readers(struct dalcs_logic_network *l, int source) {
     }
 }
 
-/* What others read of a gate is another bit now. */
-static void note_change(struct dalcs_logic_network *l, int gate, bool before) {
-    if (l->was[gate].instant != l->instant) {
-        l->was[gate] = (struct dalcs_logic_was){l->instant, before};
+/* What others read of a gate, or behind all of them of a comparator, is another bit now. */
+static void note_change(struct dalcs_logic_network *l, int source, bool before) {
+    if (l->was[source].instant != l->instant) {
+        l->was[source] = (struct dalcs_logic_was){l->instant, before};
     }
 }
 
@@ -46,8 +46,12 @@ void dalcs_logic_touch(struct dalcs_logic_network *l, int gate, bool seen) {
     }
 }
 
-void dalcs_logic_touch_bit(struct dalcs_logic_network *l, int comparator) {
-    ask_readers(l, l->n + comparator);
+void dalcs_logic_touch_bit(struct dalcs_logic_network *l, int comparator, bool before) {
+    const int source = l->n + comparator;
+    ask_readers(l, source);
+    if (l->acted == l->instant) {
+        note_change(l, source, before);
+    }
 }
 
 void dalcs_logic_touch_all(struct dalcs_logic_network *l) {
@@ -66,10 +70,11 @@ static bool read(const struct dalcs_logic_network *l, const struct dalcs_logic_i
 /* As it stood before flip-flops changed it in this instant. */
 static bool read_before(const struct dalcs_logic_network *l,
                         const struct dalcs_logic_input *input) {
-    if (input->from != DALCS_GATE_GATE || l->was[input->index].instant != l->instant) {
+    const int source = input->from == DALCS_GATE_COMPARATOR ? l->n + input->index : input->index;
+    if (input->from == DALCS_GATE_OPEN || l->was[source].instant != l->instant) {
         return read(l, input);
     }
-    return l->was[input->index].bit != input->is_inverted;
+    return l->was[source].bit != input->is_inverted;
 }
 
 static bool of_inputs(const struct dalcs_logic_network *l, const struct dalcs_logic_gate *g) {
@@ -186,30 +191,27 @@ static bool is_same(const struct dalcs_logic_state *a, const struct dalcs_logic_
            a->takes == b->takes;
 }
 
-/* Which decide first. A delay ends what others read of a gate at this instant, so that it waits for the last ones. */
-enum rank { WITHOUT_MEMORY, LATCHES, ALL };
-
-static enum rank rank_of(const struct dalcs_logic_gate *g) {
+static enum dalcs_logic_rank rank_of(const struct dalcs_logic_gate *g) {
     if (dalcs_gate_has_delay(g)) {
-        return ALL;
+        return DALCS_RANK_ALL;
     }
     if (g->kind == DALCS_GATE_LATCH || dalcs_gate_is_transparent(g)) {
-        return LATCHES;
+        return DALCS_RANK_LATCHES;
     }
-    return dalcs_gate_has_clock(g) ? ALL : WITHOUT_MEMORY;
+    return dalcs_gate_has_clock(g) ? DALCS_RANK_ALL : DALCS_RANK_WITHOUT_MEMORY;
 }
 
-static enum rank lowest_asked(const struct dalcs_logic_network *l) {
-    enum rank lowest = ALL;
-    for (int i = 0; i < l->asked.n && lowest > WITHOUT_MEMORY; i++) {
-        const enum rank rank = rank_of(&l->gate[l->asked.gate[i]]);
+static enum dalcs_logic_rank lowest_asked(const struct dalcs_logic_network *l) {
+    enum dalcs_logic_rank lowest = DALCS_RANK_ALL;
+    for (int i = 0; i < l->asked.n && lowest > DALCS_RANK_WITHOUT_MEMORY; i++) {
+        const enum dalcs_logic_rank rank = rank_of(&l->gate[l->asked.gate[i]]);
         lowest = rank < lowest ? rank : lowest;
     }
     return lowest;
 }
 
 /* Those asked up to a rank are those of the next round; the others stay asked. */
-static void take_asked(struct dalcs_logic_network *l, enum rank rank) {
+static void take_asked(struct dalcs_logic_network *l, enum dalcs_logic_rank rank) {
     int n = 0;
     for (int i = 0; i < l->asked.n; i++) {
         const int k = l->asked.gate[i];
@@ -224,7 +226,7 @@ static void take_asked(struct dalcs_logic_network *l, enum rank rank) {
 }
 
 /* One round; does anything change? */
-static bool change(struct dalcs_logic_network *l, enum rank rank, void *user,
+static bool change(struct dalcs_logic_network *l, enum dalcs_logic_rank rank, void *user,
                    void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
     bool any = false;
     take_asked(l, rank);
@@ -241,8 +243,9 @@ static bool change(struct dalcs_logic_network *l, enum rank rank, void *user,
         l->state[k] = l->next[k];
         if (!is_same(&l->state[k], &before)) {
             const bool is_seen = l->state[k].seen != before.seen;
-            if (is_seen && rank == ALL) {
+            if (is_seen && rank == DALCS_RANK_ALL) {
                 note_change(l, k, before.seen);
+                l->acted = l->instant;
             }
             dalcs_logic_touch(l, k, is_seen);
             any = true;
@@ -252,15 +255,14 @@ static bool change(struct dalcs_logic_network *l, enum rank rank, void *user,
     return any;
 }
 
-/* What comes from outside passes those of low rank, without the others. Without a loop each gate is asked no more often than
- * there are gates before it; a loop may need what waits to break it, in the rounds that follow. */
-static void pass_low(struct dalcs_logic_network *l, void *user,
-                     void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
-    enum rank rank = lowest_asked(l);
-    for (int k = 0; k <= 2 * l->n && rank < ALL; k++) {
+bool dalcs_logic_pass(struct dalcs_logic_network *l, enum dalcs_logic_rank most, void *user,
+                      void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
+    enum dalcs_logic_rank rank = lowest_asked(l);
+    for (int k = 0; k <= 2 * l->n && rank <= most; k++) {
         (void)change(l, rank, user, on_q);
         rank = lowest_asked(l);
     }
+    return l->asked.n > 0;
 }
 
 void dalcs_logic_rest(struct dalcs_logic_network *l) {
@@ -318,15 +320,15 @@ static void note_moves(void *user, int gate, const struct dalcs_logic_state *nex
 static void find_loop(struct dalcs_logic_network *l) {
     memset(l->moves, 0, (size_t)l->n * sizeof(bool));
     do {
-        (void)change(l, ALL, l, note_moves);
+        (void)change(l, DALCS_RANK_ALL, l, note_moves);
     } while (!is_at_mark(l));
 }
 
 bool dalcs_logic_settle(struct dalcs_logic_network *l, void *user,
                         void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next)) {
-    pass_low(l, user, on_q);
+    (void)dalcs_logic_pass(l, DALCS_RANK_LATCHES, user, on_q);
     set_mark(l);
-    for (long round = 1; change(l, ALL, user, on_q); round++) {
+    for (long round = 1; change(l, DALCS_RANK_ALL, user, on_q); round++) {
         if (is_at_mark(l)) {
             find_loop(l);
             return false;

@@ -19,7 +19,10 @@ struct dalcs_logic_set {
     bool *has;    /* [n gates] */
 };
 
-/* What others read of a gate, before flip-flops last changed it, and in which instant. */
+/* Which gates decide first. A delay ends what others read of a gate at this instant, so that it waits for the last ones. */
+enum dalcs_logic_rank { DALCS_RANK_WITHOUT_MEMORY, DALCS_RANK_LATCHES, DALCS_RANK_ALL };
+
+/* What others read of a gate, or what a comparator says, before flip-flops changed it, and in which instant. */
 struct dalcs_logic_was {
     long instant;
     bool bit;
@@ -39,7 +42,8 @@ struct dalcs_logic_network {
     struct dalcs_logic_set marked;       /* whose state may differ from its mark */
     struct dalcs_logic_set moved; /* whose state has changed since what it shows was looked at */
     long instant;                 /* the number of this one, from 1 on */
-    struct dalcs_logic_was *was;  /* [n gates] */
+    long acted;                   /* of the last one in which flip-flops have acted */
+    struct dalcs_logic_was *was;  /* [n gates and comparators] */
     bool rests;                   /* a clock that stands high has not risen */
     bool *moves; /* [n] after a failure: in the loop that does not settle, or not at rest */
 };
@@ -58,7 +62,7 @@ void dalcs_logic_set_clear(struct dalcs_logic_set *set);
 void dalcs_logic_touch(struct dalcs_logic_network *network, int gate, bool seen);
 
 /* The bit of a comparator has changed. */
-void dalcs_logic_touch_bit(struct dalcs_logic_network *network, int comparator);
+void dalcs_logic_touch_bit(struct dalcs_logic_network *network, int comparator, bool before);
 
 /* All may have. */
 void dalcs_logic_touch_all(struct dalcs_logic_network *network);
@@ -69,6 +73,11 @@ void dalcs_logic_rest(struct dalcs_logic_network *network);
 
 /* Do all show what their inputs make of them, and will? If not, moves says which do not. */
 bool dalcs_logic_is_at_rest(struct dalcs_logic_network *network);
+
+/* What has come passes gates up to a rank, without the others. Without a loop each gate is asked no more often than there are
+ * gates before it; a loop may need what waits to break it. Are any asked still? */
+bool dalcs_logic_pass(struct dalcs_logic_network *network, enum dalcs_logic_rank most, void *user,
+                      void (*on_q)(void *user, int gate, const struct dalcs_logic_state *next));
 
 /* Until nothing changes, without time passing: gates with a delay change q alone. False: it goes round for ever, for a
  * state comes back. on_q is told of each change of a q, and of the state that it is part of. */

@@ -31,6 +31,9 @@ enum dalcs_status dalcs_logic_inputs_show(struct dalcs_logic_run *l, double t,
 enum dalcs_status dalcs_logic_effect_setup(struct dalcs_logic_run *l) DALCS_MUST_CHECK;
 void dalcs_logic_effect_finish(struct dalcs_logic_effect *effect);
 
+/* Which components have to be looked at before gates decide. Behind the places of comparators. */
+enum dalcs_status dalcs_logic_effect_find_readers(struct dalcs_logic_run *l) DALCS_MUST_CHECK;
+
 /* Nothing has changed; a stimulus has. */
 void dalcs_logic_effect_begin(struct dalcs_logic_run *l);
 void dalcs_logic_effect_note(struct dalcs_logic_run *l, int stimulus);

@@ -64,7 +64,7 @@ enum dalcs_status dalcs_logic_network_setup(struct dalcs_logic_network *l, int n
     l->next = dalcs_alloc(n, sizeof(*l->next));
     l->mark = dalcs_alloc(n, sizeof(*l->mark));
     l->moves = dalcs_alloc(n, sizeof(*l->moves));
-    l->was = dalcs_alloc(n, sizeof(*l->was));
+    l->was = dalcs_alloc(n + (size_t)n_comparators, sizeof(*l->was));
     if (l->was == NULL || l->state == NULL || l->next == NULL || l->mark == NULL ||
         l->moves == NULL) {
         return DALCS_E_NOMEM;

@@ -1,140 +1,49 @@
-/* logic_run.c - the queue of logic, what its outputs show, and where that acts. */
+/* logic_run.c - what gates decide at an instant, in waves.
+ *
+ * A wave is what has come from outside at once: events, commands, what is due, and what comparators make of sources that
+ * jump, which is looked at before anything begins. What has no memory passes it on, through the circuit, too, until
+ * nothing changes. Then what has memory acts, once. What the circuit makes of that is the next wave. */
 #include "logic_outputs.h"
 
+#include "guard_scale.h"
+#include "logic_queue.h"
+#include "look_behind.h"
 #include "radau.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-/* Times nearer than this are one, s. */
-static double resolution(const struct dalcs_logic_run *l) {
-    return l->radau != NULL ? l->radau->resolution : 4.0 * l->euler->grid.resolution;
+/* What has come from outside has been there: where gates undo it through the circuit, memory sees it before it goes. */
+static bool is_to_stay(const struct dalcs_logic_run *l, int comparator, bool is_answer) {
+    return is_answer && l->change[comparator].wave == l->wave;
 }
 
-/* ---- The queue -------------------------------------------------------------------------------------------- */
-
-static void queue(void *user, int gate, const struct dalcs_logic_state *next) {
-    struct dalcs_logic_run *l = user;
-    struct dalcs_logic_output *o = &l->output[gate];
-    const struct dalcs_logic_gate *g = &l->network.gate[gate];
-    const double due = l->now + (next->is_forced ? g->forced_delay : g->delay)[next->q];
-    if (!dalcs_gate_has_delay(g)) {
-        return;
-    }
-    if (o->n_due > 0 && o->due[o->first_due + o->n_due - 1].t >= due) {
-        o->n_due--; /* there and back in no time, or back before it is there */
-        return;
-    }
-    if (o->first_due > 0 && o->first_due >= o->n_due) {
-        memmove(o->due, o->due + o->first_due, o->n_due * sizeof(*o->due));
-        o->first_due = 0;
-    }
-    const size_t end = o->first_due + o->n_due;
-    if (dalcs_grow(&o->due, &o->due_capacity, end + 1, sizeof(*o->due)) != DALCS_OK) {
-        l->out_of_memory = true;
-        return;
-    }
-    o->due[end] = (struct dalcs_logic_due){due, l->instant};
-    o->n_due++;
-    dalcs_logic_set_add(&l->waits, gate);
-}
-
-double dalcs_logic_run_next(const struct dalcs_logic_run *l) {
-    double next = INFINITY;
-    for (int i = 0; i < l->waits.n; i++) {
-        const struct dalcs_logic_output *o = &l->output[l->waits.gate[i]];
-        next = fmin(next, o->n_due > 0 ? fmin(o->ends, o->due[o->first_due].t) : o->ends);
-    }
-    return next;
-}
-
-/* Pulses that begin at t. */
-static void start_pulses(struct dalcs_logic_run *l, double t) {
-    for (int i = 0; i < l->n_pulses; i++) {
-        const int k = l->pulse[i];
-        const struct dalcs_logic_gate *g = &l->network.gate[k];
-        struct dalcs_logic_state *state = &l->network.state[k];
-        if (state->takes) {
-            l->output[k].ends =
-                t + g->pulse.lead + (g->sampled >= 0 ? fmax(0.0, l->taken[k]) : g->pulse.length);
-            l->output[k].ends_since = ++l->number;
-            dalcs_logic_set_add(&l->waits, k);
-            dalcs_logic_touch(&l->network, k, false);
-            if (l->observer != NULL) {
-                l->observer->pulse(l->observer->user, k, l->number);
-            }
-        } else if (state->count == 0) {
-            l->output[k].ends = INFINITY;
-        }
-        state->takes = false;
-    }
-}
-
-static void tell_due(const struct dalcs_logic_run *l, long since) {
-    if (l->observer != NULL) {
-        l->observer->due(l->observer->user, since);
-    }
-}
-
-/* One that ends is followed by a time in which no other begins. */
-static bool end_pulses(struct dalcs_logic_run *l, double t) {
+/* is_answer: to what gates show, within a wave. Returns whether any is another one. */
+static bool read_bits(struct dalcs_logic_run *l, bool is_answer) {
     bool any = false;
-    for (int i = 0; i < l->n_pulses; i++) {
-        const int k = l->pulse[i];
-        const struct dalcs_logic_gate *g = &l->network.gate[k];
-        struct dalcs_logic_state *state = &l->network.state[k];
-        struct dalcs_logic_output *o = &l->output[k];
-        while (o->ends <= t + resolution(l)) {
-            tell_due(l, o->ends_since);
-            dalcs_logic_touch(&l->network, k, false);
-            const bool rests = state->count == 1 && !g->pulse.is_retriggered;
-            if (state->q) {
-                state->q = state->is_forced = false;
-                queue(l, k, state);
-                any = true;
-            }
-            state->count = rests ? 2 : 0;
-            o->ends = rests ? o->ends + g->pulse.recovery : INFINITY;
-        }
-    }
-    return any;
-}
-
-/* Has anything come due? */
-static bool release(struct dalcs_logic_run *l, double t) {
-    bool any = end_pulses(l, t);
-    for (int i = l->waits.n - 1; i >= 0; i--) {
-        const int k = l->waits.gate[i];
-        struct dalcs_logic_output *o = &l->output[k];
-        while (o->n_due > 0 && o->due[o->first_due].t <= t + resolution(l)) {
-            tell_due(l, o->due[o->first_due].since);
-            l->network.state[k].seen = !l->network.state[k].seen;
-            dalcs_logic_touch(&l->network, k, true);
-            o->first_due++;
-            o->n_due--;
-            any = true;
-        }
-        if (o->n_due == 0 && isinf(o->ends)) {
-            l->waits.has[k] = false;
-            l->waits.gate[i] = l->waits.gate[--l->waits.n];
-        }
-    }
-    return any;
-}
-
-/* ---- Events ------------------------------------------------------------------------------------------------ */
-
-static void read_bits(struct dalcs_logic_run *l) {
     for (int k = 0; k < l->n_comparators; k++) {
         const struct dalcs_component *component = &l->euler->component[l->place[k].part];
         const bool bit = dalcs_osnsp_is_on(&component->osnsp, l->place[k].pair);
-        if (bit != l->bit[k]) {
-            struct dalcs_logic_change *change = &l->change[k];
+        if (bit == l->bit[k]) {
+            continue;
+        }
+        if (is_to_stay(l, k, is_answer)) {
+            l->is_late = true;
+            continue;
+        }
+        any = true;
+        l->change[k].wave = is_answer ? l->change[k].wave : l->wave;
+        dalcs_logic_touch_bit(&l->network, k, l->bit[k]);
+        l->bit[k] = bit;
+    }
+    return any;
+}
+
+/* What comparators say is what memory acts on now: a change before that which has gone back has been for nobody. */
+static void count_changes(struct dalcs_logic_run *l) {
+    for (int k = 0; k < l->n_comparators; k++) {
+        struct dalcs_logic_change *change = &l->change[k];
+        if (change->bit != l->bit[k]) {
             change->n = change->instant == l->instant ? change->n + 1 : 1;
             change->instant = l->instant;
-            l->bit[k] = bit;
-            dalcs_logic_touch_bit(&l->network, k);
+            change->bit = l->bit[k];
         }
     }
 }
@@ -146,7 +55,7 @@ bool dalcs_logic_run_flashed(const struct dalcs_logic_run *l, int comparator) {
 
 bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l) {
     if (l->circuit != NULL) {
-        read_bits(l);
+        (void)read_bits(l, false);
     }
     return l->circuit == NULL || dalcs_logic_is_at_rest(&l->network);
 }
@@ -156,13 +65,13 @@ enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed)
     if (l->circuit == NULL) {
         return DALCS_OK;
     }
-    read_bits(l);
+    (void)read_bits(l, false);
     dalcs_logic_rest(&l->network);
     l->now = 0.0;
     for (int k = 0; k < l->network.n; k++) {
         l->output[k].n_due = 0;
         if (l->network.state[k].q != l->network.state[k].seen) {
-            queue(l, k, &l->network.state[k]);
+            dalcs_logic_queue(l, k, &l->network.state[k]);
         }
         l->network.state[k].takes = false;
         DALCS_TRY(dalcs_logic_output_start(l, k, changed));
@@ -212,6 +121,7 @@ static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
             }
         }
         DALCS_TRY(dalcs_radau_disturb(l->radau, part, t, l->effect.changed));
+        l->effect.disturbed[k] = l->instant;
     }
     return DALCS_OK;
 }
@@ -220,25 +130,122 @@ static enum dalcs_status disturb(struct dalcs_logic_run *l, double t) {
 static bool settle(struct dalcs_logic_run *l, double t, long most) {
     bool settles;
     do {
-        (void)release(l, t);
-        settles = dalcs_logic_settle(&l->network, l, queue);
-        start_pulses(l, t);
-    } while (settles && release(l, t) && most-- > 0);
+        (void)dalcs_logic_release(l, t);
+        settles = dalcs_logic_settle(&l->network, l, dalcs_logic_queue);
+        dalcs_logic_start_pulses(l, t);
+    } while (settles && dalcs_logic_release(l, t) && most-- > 0);
     return settles && most >= 0;
 }
 
-/* Until nothing changes at t. Each round moves an output. Without a loop through the circuit a change passes each
+static bool is_comparator(const struct dalcs_logic_run *l, int part, int pair) {
+    bool is = false;
+    for (int i = 0; i < l->n_comparators && !is; i++) {
+        is = l->place[i].part == part && l->place[i].pair == pair;
+    }
+    return is;
+}
+
+/* May what comparators of a part read jump at the instant where its segment has ended? */
+static bool may_jump(const struct dalcs_logic_run *l, int k) {
+    const struct dalcs_radau_part *part = &l->radau->part[k];
+    const bool starts = part->segment.t == 0.0 &&
+                        (l->radau->is_given || dalcs_component_jumps_at_start(part->component));
+    bool may = starts || part->guards.leaps;
+    for (int i = 0; i < part->guards.n_crossed && !may; i++) {
+        may = !is_comparator(l, k, dalcs_guard_pair(part, part->guards.crossed[i]));
+    }
+    return may;
+}
+
+static bool is_to_look_at(const struct dalcs_logic_run *l, int k) {
+    const struct dalcs_logic_effect *e = &l->effect;
+    return e->reads[k] && l->radau->part[k].waits &&
+           (e->looked[k] == l->instant ? e->disturbed[k] == l->instant
+                                       : e->disturbed[k] == l->instant || may_jump(l, k));
+}
+
+/* Comparators of a part that waits to begin, where what they read has jumped since it was looked at: as they stand behind that,
+ * before any state jumps with it. */
+static enum dalcs_status look_at(struct dalcs_logic_run *l, int k, bool is_answer) {
+    struct dalcs_radau_part *part = &l->radau->part[k];
+    l->effect.looked[k] = l->instant;
+    l->effect.disturbed[k] = 0;
+    DALCS_TRY(dalcs_look_behind(l->radau, part, part->work.mode_first));
+    for (int i = 0; i < l->n_comparators; i++) {
+        const struct dalcs_logic_place *place = &l->place[i];
+        if (place->part == k && !is_to_stay(l, i, is_answer)) {
+            dalcs_osnsp_command(&part->component->osnsp, place->pair,
+                                dalcs_mode_has(part->work.mode_first, place->pair));
+        }
+    }
+    return DALCS_OK;
+}
+
+static enum dalcs_status look(struct dalcs_logic_run *l, bool is_answer) {
+    for (int k = 0; l->radau != NULL && k < l->radau->n_parts; k++) {
+        if (is_to_look_at(l, k)) {
+            DALCS_TRY(look_at(l, k, is_answer));
+        }
+    }
+    return DALCS_OK;
+}
+
+/* What has come from outside: events, commands, what is due, and, before anything else is decided, what comparators make of
+ * sources that jump. */
+static enum dalcs_status begin_wave(struct dalcs_logic_run *l, double t) {
+    l->wave++;
+    l->is_late = false;
+    (void)read_bits(l, false);
+    (void)dalcs_logic_release(l, t);
+    if (l->network.asked.n > 0) {
+        DALCS_TRY(look(l, false));
+        (void)read_bits(l, false);
+    }
+    return DALCS_OK;
+}
+
+/* What passes from gates to gates through the circuit is shown, and read there. *differs: some comparator does. */
+static enum dalcs_status answer(struct dalcs_logic_run *l, double t, bool *differs) {
+    bool acts;
+    *differs = false;
+    DALCS_TRY(show_changes(l, t, &acts));
+    if (acts) {
+        DALCS_TRY(disturb(l, t));
+        DALCS_TRY(look(l, true));
+        *differs = read_bits(l, true);
+    }
+    return DALCS_OK;
+}
+
+/* Gates without memory: before others decide, the circuit has what they make of what has come, and they have what the
+ * circuit makes of that. So it does not count which way an input has come. Where that goes on and on, memory is to end it. */
+static enum dalcs_status pass_without_memory(struct dalcs_logic_run *l, double t, long most) {
+    bool differs = true;
+    if (l->network.asked.n == 0) {
+        return DALCS_OK;
+    }
+    for (long round = 0; differs && round < most; round++) {
+        (void)dalcs_logic_pass(&l->network, DALCS_RANK_WITHOUT_MEMORY, l, dalcs_logic_queue);
+        DALCS_TRY(answer(l, t, &differs));
+    }
+    count_changes(l);
+    return DALCS_OK;
+}
+
+/* Until nothing changes at t. Each wave moves an output. Without a loop through the circuit a change passes each
  * comparator and each gate at most once on its way, there and, as with the positions of switches, back. */
 static enum dalcs_status decide(struct dalcs_logic_run *l, double t) {
     const long most = 2L * (l->network.n + l->n_comparators + 1);
+    long rounds = most;
     bool acts = true;
     if (!l->is_open || l->now != t) {
         l->is_open = true;
         l->now = t;
         l->instant = l->network.instant = ++l->number;
     }
-    for (long round = 0; acts; round++) {
-        read_bits(l);
+    while (acts || l->is_late) {
+        DALCS_TRY(begin_wave(l, t));
+        DALCS_TRY(pass_without_memory(l, t, most));
         if (!settle(l, t, most)) {
             return DALCS_NOT_CONVERGED;
         }
@@ -246,7 +253,7 @@ static enum dalcs_status decide(struct dalcs_logic_run *l, double t) {
         if (l->out_of_memory) {
             return DALCS_E_NOMEM;
         }
-        if (acts && round == most) {
+        if ((acts || l->is_late) && rounds-- <= 0) {
             return DALCS_NOT_CONVERGED;
         }
         if (acts) {

@@ -46,7 +46,9 @@ struct dalcs_logic_run {
         dalcs_logic_change { /* of a bit: the instant of the last one, and how many there were in it */
         long instant;
         int n;
-    } * change; /* [n_comparators] */
+        bool bit;  /* as memory has seen it last */
+        long wave; /* in which it has come from outside */
+    } * change;    /* [n_comparators] */
 
     struct dalcs_logic_place { /* of a comparator: its component, or part, and its pair there */
         int part, pair;
@@ -85,13 +87,21 @@ struct dalcs_logic_run {
         bool *acts;    /* [n_components] what has changed does on a component */
         int *first,
             *part; /* part[first[k] .. first[k + 1] - 1]: the components that stimulus k acts on */
+        bool *
+            reads; /* [n_components] a comparator there reads the circuit, and what it says meets something else */
+        long *looked,
+            *disturbed; /* [n_components] the instant in which such ones were looked at before anything began
+                                     there; in which sources changed since */
     } effect;
 
-    double now;                        /* s, of the changes of q that the queue is told of */
-    bool is_open;                      /* what happens at `now` is still being decided */
-    long number;                       /* the last one given */
-    long instant;                      /* the number of this one */
-    struct dalcs_logic_inputs *inputs; /* NULL: nothing comes from outside */
+    double now;   /* s, of the changes of q that the queue is told of */
+    bool is_open; /* what happens at `now` is still being decided */
+    long
+        wave; /* what comes from outside at once and what gates make of it, up to where all memory has acted */
+    bool is_late; /* it has undone what has come, and that is still to be read */
+    long number;  /* the last one given */
+    long instant; /* the number of this one */
+    struct dalcs_logic_inputs *inputs;           /* NULL: nothing comes from outside */
     const struct dalcs_logic_observer *observer; /* NULL: none */
     bool out_of_memory;
     struct dalcs_stimulus *as_built; /* [n_stimuli] what the circuit had */

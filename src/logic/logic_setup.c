@@ -81,6 +81,7 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
     l->network.gate = circuit->control.gate;
     enum dalcs_status status = allocate(l);
     status = status == DALCS_OK ? dalcs_logic_find_comparators(circuit, euler, l->place) : status;
+    status = status == DALCS_OK ? dalcs_logic_effect_find_readers(l) : status;
     for (int k = 0; k < l->network.n && status == DALCS_OK; k++) {
         struct dalcs_logic_state *state = &l->network.state[k];
         state->q = state->seen = circuit->control.gate[k].initial;

@@ -113,6 +113,50 @@ def flip_flops(checker, program):
     check(checker, program, "J and K that change places with the clock", jk, taken)
 
 
+WAYS = {  # of a signal of 0 and 1 V to another node, in no time; some hold it below 1 V
+    "a divider": ["Ra{n} {s} {n} 1k", "Rb{n} {n} 0 100k"],
+    "E": ["E{n} {n} 0 {s} 0 1"],
+    "E behind a resistor": ["E{n} {n}x 0 {s} 0 1", "Ra{n} {n}x {n} 1", "Rb{n} {n} 0 1k"],
+    "G on a resistor": ["G{n} 0 {n} {s} 0 1m", "R{n} {n} 0 1k"],
+    "a formula": ["B{n} {n} 0 V=0.9*v({s})"],
+    "a clipped formula": ["B{n} {n} 0 V=min(2*v({s}),0.9)"],
+    "a diode": ["D{n} {s} {n} ideal", "R{n} {n} 0 1k"],
+    "a closed switch": ["S{n} {s} {n} one 0 sw", "R{n} {n} 0 1k"],
+    "a resistor and a capacitor behind another": ["Ra{n} {s} {n} 1k", "Rb{n} {n} {n}x 100k", "C{n} {n}x 0 1u"],
+    "a hold that tracks": ["A{n} {s} 0 0 one 0 0 {n} 0 SAMPLEHOLD", "R{n} {n} 0 1k"],
+    "a buffer and a resistor": ["A{n} {s} 0 0 0 0 0 {n}x 0 BUF", "Ra{n} {n}x {n} 1k", "Rb{n} {n} 0 100k"],
+}
+MODELS = ["Vone one 0 1", ".model ideal D(Ron=0)", ".model sw sw(vt=0.5 ron=0 roff=1g)"]
+
+
+def ways(checker, program):
+    """Both inputs are the signal s. It comes to one of them straight, to the other one through the circuit."""
+    never = {"rises": 0, 1.5: 0, 2.5: 0, 9.5: 0, 35.5: 0}
+    behind = {
+        "set and reset": ["A1 {a} {b} 0 0 0 0 q 0 SRFLOP"],
+        "a counter and its reset": ["A1 {a} {b} 0 0 0 0 q 0 COUNTER cycles=2"],
+        "a counter of what an AND has of a signal and its inverse": [
+            "A2 {b} 0 0 0 0 nb 0 0 INV", "Rn nb 0 1k", "A3 {a} nb 0 0 0 0 g 0 AND", "Rg g 0 1k", "A1 g 0 0 0 0 0 q 0 COUNTER cycles=2"],
+        "data and a clock that is their inverse": ["A2 {b} 0 0 0 0 nb 0 0 INV", "A1 {a} 0 nb 0 0 0 q 0 DFLOP"],
+        "a clock and its clear": ["A1 one 0 {a} 0 {b} 0 q 0 DFLOP"],
+        "a difference, read behind a resistor": [
+            "A2 {a} {b} 0 0 0 0 x 0 XOR", "Rx x y 1k", "Ry y 0 9k", "A1 y 0 0 0 0 0 q 0 COUNTER cycles=2"],
+    }
+    sources = {"in the run": "PULSE(0 1 1u 0 0 1u 10u)", "at its start": "PULSE(1 0 1u 0 0 9u 10u)"}
+    cases = itertools.product(behind.items(), WAYS.items(), sources.items(), (False, True))
+    for (what, cards), (way, path), (when, source), is_first in some_of(list(cases)):
+        if "tracks" in way and when != "in the run":
+            continue  # it begins to track at 0, and that is a change of what has memory
+        a, b = ("p", "s") if is_first else ("s", "p")
+        deck = [f"Vs s 0 {source}", *[card.format(s="s", n="p") for card in path], *[card.format(a=a, b=b) for card in cards], *MODELS]
+        check(checker, program, f"{what}, {'the first' if is_first else 'the second'} through {way}, {when}", deck, never)
+    for way, path in WAYS.items():
+        stages = ["Vs s 0 PULSE(0 1 1u 0 0 1u 10u)", "Vd d 0 PULSE(0 1 5u 0 0 100u 200u)", *MODELS,
+                  *[card.format(s="s", n="p") for card in path], "A1 d 0 s 0 0 0 h 0 DFLOP", "Rh h hx 1k", "Ri hx 0 9k"]
+        check(checker, program, f"two stages of a shift register, the second clock through {way}",
+              [*stages, "A2 hx 0 p 0 0 0 q 0 DFLOP"], {"rises": 1, 10.9: 0, 11.1: 0, 20.9: 0, 21.1: 1})
+
+
 def loops(checker, program):
     """A reset that its own output takes away, of counters of 3 and of 5 states by flip-flops that toggle; NORs that race."""
     ripple = [pulse("s", 1, 1), "A1 ab 0 s 0 c ab a 0 DFLOP", "A2 qb 0 ab 0 c qb q 0 DFLOP", "A3 a q 0 0 0 0 c 0 AND"]
@@ -130,7 +174,7 @@ def loops(checker, program):
 
 def main():
     checker = Checker("simultaneous_inputs")
-    for part in (latches, modulator, flip_flops, loops):
+    for part in (latches, modulator, flip_flops, ways, loops):
         part(checker, sys.argv[1])
     return checker.finish()
 
