@@ -25,8 +25,8 @@
 struct dalcs_audit_state {
     double t;
     enum dalcs_side side;
-    double *v;       /* [n_nodes] V, ground is 0 */
-    double *i;       /* [n_devices] A, of V, L, D, S and of E, H and B; of others not used */
+    double *v; /* [n_nodes] V, ground is 0 */
+    double *i; /* [n_devices] A, of V, L, D, S and of E, H and B; of R where the reader tells it */
     double *lambda;  /* [n_lambdas] of formulas, in their own units */
     bool *is_closed; /* [n_devices] of switches */
     bool *
@@ -104,6 +104,8 @@ struct dalcs_audit_reader {
                                            const struct dalcs_audit_kept *before,
                                            const struct dalcs_audit_kept *present);
     void (*go_back)(void *user, int part);
+    /* Is the current of a resistor one of the state, and not what its voltages make of it? NULL: of none. */
+    bool (*tells_current)(void *user, int device);
     /* The state of the part at state->t, as the limit from state->side. */
     void (*read)(void *user, int part, struct dalcs_audit_state *state);
     /* Raises v[n_nodes] and i[n_devices] to the largest magnitudes of the part so far. */

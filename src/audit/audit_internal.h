@@ -125,6 +125,8 @@ struct dalcs_audit {
 
         bool *
             is_merged; /* [n_devices] a short whose two nodes are one: no formula reads its current */
+        bool *
+            is_told; /* [n_devices] a resistor whose current is one of the state: v = R i is a law of it as of a coil */
     } net;
 
     struct audit_part *part;

@@ -5,6 +5,7 @@
  * circuit/pairs.c makes of a kink 0 <= lambda _|_ lambda / g - a >= 0, and of a saturation or a jump two pairs,
  *     0 <= lambda _|_ nu + lambda / g - a >= 0    and    0 <= nu _|_ H - lambda >= 0.
  * An argument a has lambdas of earlier pairs only. */
+#include "audit_currents.h"
 #include "audit_formula.h"
 
 struct reading {
@@ -30,7 +31,8 @@ static struct audit_number own_value(const struct reading *r, enum dalcs_quantit
                                      AUDIT_ROUNDING * scale + audit->sums.volts};
     case DALCS_QUANTITY_CURRENT:
         return (struct audit_number){audit_current(audit, r->s, index) + by,
-                                     AUDIT_ROUNDING * scale + audit->sums.amperes};
+                                     AUDIT_ROUNDING * scale + audit->sums.amperes +
+                                         audit_current_rounding(audit, r->s, index)};
     default:
         return (struct audit_number){
             dalcs_stimulus_value(&audit->circuit->stimulus[index], r->s->t, r->s->side) + by,

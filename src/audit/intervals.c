@@ -2,7 +2,7 @@
  *
  * A polynomial that is right to the tolerance may have a derivative that is not. So storage is held to
  * integrals: the charge that capacitors at a node took up is what its other branches brought. */
-#include "audit_internal.h"
+#include "audit_currents.h"
 
 const double audit_gauss_node[] = {0.04691007703066800, 0.23076534494715845, 0.5,
                                    0.76923465505284155, 0.95308992296933200};
@@ -43,8 +43,7 @@ static void add_flow(struct dalcs_audit *audit, const struct audit_part *part,
         const double i = audit_current(audit, s, device);
         const double amperes = audit_amperes(audit, part, device);
         const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
-        const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
-        const double rounding = AUDIT_ROUNDING * (g * volts + fabs(i)) * duration;
+        const double rounding = audit_current_rounding(audit, s, device) * duration;
         leave(audit, d, i * duration, amperes * duration, rounding);
         audit->sums.energy_rounding +=
             volts * rounding; /* Tellegen: currents that miss at a node take its voltage's power */

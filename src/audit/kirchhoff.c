@@ -1,5 +1,6 @@
 /* kirchhoff.c - what leaves each node, with its rounding, and all that holds at one time. */
 #include "audit_crossing.h"
+#include "audit_currents.h"
 #include "audit_formula.h"
 
 #include "union_find.h"
@@ -39,8 +40,8 @@ void audit_round_storage(struct dalcs_audit *audit, const struct audit_part *par
 /* What rounding of the voltages at a device makes of its current, of a charge over a step, or over a step of a flux. A value
  * between the nodes of a step is a sum of those at the nodes: where it passes through 0 it has the rounding of these. */
 static double rounding_of(const struct dalcs_audit *audit, const struct audit_part *part,
-                          const struct dalcs_audit_state *s, const struct dalcs_device *d,
-                          double current) {
+                          const struct dalcs_audit_state *s, int device, double current) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
     const double *v = audit->scale.v;
     const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
     if (d->kind == DALCS_CAPACITOR) {
@@ -58,7 +59,8 @@ static double rounding_of(const struct dalcs_audit *audit, const struct audit_pa
         return AUDIT_ROUNDING * fabs(current) +
                STORED_ROUNDING * fmax(volts, part->floor.largest_volt) * part->at.step / d->value;
     }
-    const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
+    const bool is_made = d->kind == DALCS_RESISTOR && !audit->net.is_told[device];
+    const double g = is_made ? fabs(1.0 / d->value) : 0.0;
     const double at_nodes = v[d->node[0]] + v[d->node[1]];
     return AUDIT_ROUNDING * (g * at_nodes + fabs(current)) + 2.0 * g * audit->sums.volts;
 }
@@ -76,7 +78,7 @@ void audit_sum_currents(struct dalcs_audit *audit, const struct audit_part *part
         const bool is_charge = d->kind == DALCS_CAPACITOR;
         const double current = is_charge ? 0.0 : audit_current(audit, s, device);
         const double scale = is_charge ? 0.0 : audit_amperes(audit, part, device);
-        const double rounding = rounding_of(audit, part, s, d, current);
+        const double rounding = rounding_of(audit, part, s, device, current);
         leave(audit, d->node[0], current, scale, rounding);
         leave(audit, d->node[1], -current, scale, rounding);
     }
@@ -149,7 +151,7 @@ static bool hands_on(const struct dalcs_audit *audit, const struct audit_part *p
     case DALCS_CCVS:
         return true;
     case DALCS_RESISTOR:
-        return d->value == 0.0;
+        return audit->net.is_told[device];
     case DALCS_SWITCH:
         return s->is_closed[device];
     case DALCS_DIODE:
@@ -185,21 +187,35 @@ static double source_moves(const struct dalcs_audit *audit, const struct audit_p
     return hangs ? fabs(audit->state.shifted.v[node] - s->v[node]) : 0.0;
 }
 
+static void read_a_moment_away(struct dalcs_audit *audit, const struct audit_part *part,
+                               const struct dalcs_audit_state *s) {
+    const double away = audit->options.resolution;
+    audit->state.shifted.side = s->side;
+    audit->state.shifted.t = s->t + (s->side == DALCS_RIGHT ? away : -away);
+    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->state.shifted);
+}
+
+double audit_sources_move(struct dalcs_audit *audit, const struct audit_part *part,
+                          const struct dalcs_audit_state *s, const struct dalcs_device *d) {
+    read_a_moment_away(audit, part, s);
+    return source_moves(audit, part, s, audit->net.node_of[d->node[0]]) +
+           source_moves(audit, part, s, audit->net.node_of[d->node[1]]);
+}
+
 /* What rounding of time makes of the current that leaves a node. A source is what it is at a time, and what follows it is a
  * polynomial of the time since a step began: on a steep flank two copies of one voltage differ, and a resistor between
  * them carries that. */
 static double rounding_of_time(struct dalcs_audit *audit, const struct audit_part *part,
                                const struct dalcs_audit_state *s, int node) {
-    const double away = audit->options.resolution;
-    audit->state.shifted.side = s->side;
-    audit->state.shifted.t = s->t + (s->side == DALCS_RIGHT ? away : -away);
-    audit->reader.read(audit->reader.user, (int)(part - audit->part), &audit->state.shifted);
+    read_a_moment_away(audit, part, s);
     double sum = 0.0;
     for (int k = 0; k < part->n_devices; k++) {
-        const struct dalcs_device *d = &audit->circuit->device[part->device[k]];
+        const int device = part->device[k];
+        const struct dalcs_device *d = &audit->circuit->device[device];
         const int a = audit->net.node_of[d->node[0]];
         const int b = audit->net.node_of[d->node[1]];
-        if (d->kind == DALCS_RESISTOR && d->value != 0.0 && (a == node) != (b == node)) {
+        if (d->kind == DALCS_RESISTOR && !audit->net.is_told[device] &&
+            (a == node) != (b == node)) {
             sum += (source_moves(audit, part, s, a) + source_moves(audit, part, s, b)) /
                    fabs(d->value);
         }

@@ -1,4 +1,5 @@
 /* laws.c - what holds of a branch at each time: its law, its signs, its position. */
+#include "audit_currents.h"
 #include "audit_formula.h"
 #include "audit_positions.h"
 
@@ -209,7 +210,7 @@ double audit_current(const struct dalcs_audit *audit, const struct dalcs_audit_s
     }
     switch (d->kind) {
     case DALCS_RESISTOR:
-        return d->value != 0.0 ? audit_voltage(s, d) / d->value : s->i[device];
+        return audit->net.is_told[device] ? s->i[device] : audit_voltage(s, d) / d->value;
     case DALCS_ISOURCE:
         return dalcs_stimulus_value(&audit->circuit->stimulus[d->stimulus], s->t, s->side);
     case DALCS_VCCS:
@@ -219,6 +220,15 @@ double audit_current(const struct dalcs_audit *audit, const struct dalcs_audit_s
     default:
         return s->i[device];
     }
+}
+
+double audit_current_rounding(const struct dalcs_audit *audit, const struct dalcs_audit_state *s,
+                              int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    const bool is_made = d->kind == DALCS_RESISTOR && !audit->net.is_told[device];
+    const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
+    const double of_voltages = is_made ? volts / fabs(d->value) : 0.0;
+    return AUDIT_ROUNDING * (of_voltages + fabs(audit_current(audit, s, device)));
 }
 
 /* How far a source moves while times cannot be told apart: on a steep flank that is seen. */
@@ -266,10 +276,11 @@ void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
         check_switch(audit, part, s, device);
         return;
     case DALCS_RESISTOR:
-        if (d->value != 0.0) {
+        if (!audit->net.is_told[device]) {
             return;
         }
-        wanted = 0.0;
+        wanted = d->value * s->i[device];
+        rounding = 2.0 * audit->sums.volts;
         break;
     default: /* R, C, L, I, F, G: their currents are in Kirchhoff's law */
         return;
@@ -277,6 +288,9 @@ void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
     double off = fabs(audit_voltage(s, d) - wanted) - rounding - audit->options.vntol;
     if (d->kind == DALCS_VSOURCE && off > part->tolerance * scale) {
         off -= source_slack(audit, &audit->circuit->stimulus[d->stimulus], s);
+    }
+    if (d->kind == DALCS_RESISTOR && off > part->tolerance * scale) {
+        off -= audit_sources_move(audit, part, s, d);
     }
     audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off, scale, s->t);
 }

@@ -178,16 +178,18 @@ enum dalcs_status audit_set_up(struct dalcs_audit *audit) {
     audit->net.is_fed = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_held = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
     audit->net.is_gated = dalcs_arena_alloc(&audit->arena, n_nodes, sizeof(bool));
-    audit->net.is_merged =
-        dalcs_arena_alloc(&audit->arena, (size_t)audit->circuit->n_devices, sizeof(bool));
+    const size_t n_devices = (size_t)audit->circuit->n_devices;
+    audit->net.is_merged = dalcs_arena_alloc(&audit->arena, n_devices, sizeof(bool));
+    audit->net.is_told = dalcs_arena_alloc(&audit->arena, n_devices, sizeof(bool));
     if (audit->net.is_merged == NULL || audit->net.is_read == NULL || audit->net.is_held == NULL ||
         audit->net.node_of == NULL || audit->net.has_charge == NULL || audit->net.is_fed == NULL ||
-        audit->net.is_gated == NULL) {
+        audit->net.is_gated == NULL || audit->net.is_told == NULL) {
         return DALCS_E_NOMEM;
     }
     find_fed(audit);
     find_held(audit);
     audit_merge_shorts(audit);
+    audit_find_told(audit);
     DALCS_TRY(number_lambdas(audit));
     DALCS_TRY(find_formula_parts(audit));
     DALCS_TRY(audit_find_reads(audit));

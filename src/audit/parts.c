@@ -164,6 +164,19 @@ static void note_read(void *to, const struct dalcs_affine_term *term) {
     }
 }
 
+static bool is_told(const struct dalcs_audit *audit, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    const struct dalcs_audit_reader *r = &audit->reader;
+    return d->kind == DALCS_RESISTOR &&
+           (d->value == 0.0 || (r->tells_current != NULL && r->tells_current(r->user, device)));
+}
+
+void audit_find_told(struct dalcs_audit *audit) {
+    for (int i = 0; i < audit->circuit->n_devices; i++) {
+        audit->net.is_told[i] = is_told(audit, i);
+    }
+}
+
 void audit_merge_shorts(struct dalcs_audit *audit) {
     const struct dalcs_circuit *c = audit->circuit;
     dalcs_union_reset(audit->net.node_of, c->n_nodes);

@@ -228,9 +228,11 @@ void audit_fill_branch(struct audit_filling *f, int device) {
         audit_add_read_current(f, audit_row_now(f), d->control, -factor * d->value);
         break;
     case DALCS_RESISTOR:
-        if (d->value == 0.0) {
-            factor = audit_over(f, tolerance * scale + f->audit->options.vntol);
+        if (f->audit->net.is_told[device]) {
+            factor = audit_over(f, tolerance * scale + 2.0 * f->audit->sums.volts +
+                                       f->audit->options.vntol);
             audit_add_voltage(f, audit_row_now(f), d, 0, factor);
+            audit_add_read_current(f, audit_row_now(f), device, -factor * d->value);
         }
         break;
     case DALCS_INDUCTOR:

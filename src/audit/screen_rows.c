@@ -36,10 +36,10 @@ static void add_current(const struct audit_filling *f, struct dalcs_audit_row *r
     }
     switch (d->kind) {
     case DALCS_RESISTOR:
-        if (d->value != 0.0) {
-            audit_add_voltage(f, row, d, 0, factor / d->value);
-        } else {
+        if (f->audit->net.is_told[device]) {
             audit_add_read_current(f, row, device, factor);
+        } else {
+            audit_add_voltage(f, row, d, 0, factor / d->value);
         }
         break;
     case DALCS_ISOURCE:

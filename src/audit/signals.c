@@ -1,5 +1,5 @@
 /* signals.c - signals, and formulas of them, as the auditor reads them. */
-#include "audit_internal.h"
+#include "audit_currents.h"
 
 #include "claims.h"
 
@@ -38,13 +38,9 @@ double audit_signal_value(const struct dalcs_audit *audit, const struct dalcs_au
         of->rounding = AUDIT_ROUNDING * (fabs(s->v[node[0]]) + fabs(s->v[node[1]]));
         return s->v[node[0]] - s->v[node[1]];
     }
-    const struct dalcs_device *d = &audit->circuit->device[signal->device];
-    const double i = audit_current(audit, s, signal->device);
-    const double g = d->kind == DALCS_RESISTOR && d->value != 0.0 ? fabs(1.0 / d->value) : 0.0;
-    const double volts = fabs(s->v[d->node[0]]) + fabs(s->v[d->node[1]]);
     of->scale = audit_amperes(audit, part, signal->device);
-    of->rounding = AUDIT_ROUNDING * (g * volts + fabs(i));
-    return i;
+    of->rounding = audit_current_rounding(audit, s, signal->device);
+    return audit_current(audit, s, signal->device);
 }
 
 double dalcs_audit_signal(struct dalcs_audit *audit, int index, double t, enum dalcs_side side,

@@ -107,4 +107,7 @@ enum dalcs_status audit_make_parts(struct dalcs_audit *audit);
 /* A current that a formula reads is an unknown, with Kirchhoff's law at both ends, also that of a short. */
 void audit_merge_shorts(struct dalcs_audit *audit);
 
+/* ... the resistors whose current is one of the state. */
+void audit_find_told(struct dalcs_audit *audit);
+
 #endif

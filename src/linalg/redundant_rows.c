@@ -11,7 +11,9 @@ enum dalcs_status dalcs_dependencies_setup(struct dalcs_dependencies *d, struct 
     d->scaled = dalcs_arena_alloc(arena, (size_t)n * (size_t)n_rows, sizeof(double));
     d->size = dalcs_arena_alloc(arena, (size_t)n_rows, sizeof(double));
     d->chosen = dalcs_arena_alloc(arena, (size_t)n, sizeof(int));
-    bool complete = d->weight != NULL && d->scaled != NULL && d->size != NULL && d->chosen != NULL;
+    d->largest = dalcs_arena_alloc(arena, (size_t)n, sizeof(int));
+    bool complete = d->weight != NULL && d->scaled != NULL && d->size != NULL &&
+                    d->chosen != NULL && d->largest != NULL;
     return complete ? DALCS_OK : DALCS_E_NOMEM;
 }
 
@@ -20,19 +22,25 @@ static double *scaled_of(const struct dalcs_dependencies *d, int k) {
     return d->scaled + (size_t)k * (size_t)d->n_rows;
 }
 
-/* The largest weight from dependency `first` on, which is brought there; returns its row. */
-static int bring_largest(const struct dalcs_dependencies *d, int first) {
+static int largest_of(const struct dalcs_dependencies *d, int k) {
+    const double *weight = scaled_of(d, k);
     int row = 0;
-    int largest = first;
-    for (int k = first; k < d->n; k++) {
-        for (int r = 0; r < d->n_rows; r++) {
-            if (fabs(scaled_of(d, k)[r]) > fabs(scaled_of(d, largest)[row])) {
-                largest = k;
-                row = r;
-            }
-        }
+    for (int r = 1; r < d->n_rows; r++) {
+        row = fabs(weight[r]) > fabs(weight[row]) ? r : row;
     }
-    for (int r = 0; r < d->n_rows; r++) {
+    return row;
+}
+
+/* The dependency with the largest weight from `first` on is brought there; returns the row of that. */
+static int bring_largest(const struct dalcs_dependencies *d, int first) {
+    int largest = first;
+    for (int k = first + 1; k < d->n; k++) {
+        const double weight = fabs(scaled_of(d, k)[d->largest[k]]);
+        largest = weight > fabs(scaled_of(d, largest)[d->largest[largest]]) ? k : largest;
+    }
+    const int row = d->largest[largest];
+    d->largest[largest] = d->largest[first];
+    for (int r = 0; r < d->n_rows && largest != first; r++) {
         const double swap = scaled_of(d, first)[r];
         scaled_of(d, first)[r] = scaled_of(d, largest)[r];
         scaled_of(d, largest)[r] = swap;
@@ -40,8 +48,12 @@ static int bring_largest(const struct dalcs_dependencies *d, int first) {
     return row;
 }
 
-/* False: one is of rows alone that may not be left out. */
+/* False: one is of rows alone that may not be left out. Those of islands apart have no row in common, so that most have
+ * nothing of another one to lose. */
 static bool choose(const struct dalcs_dependencies *d) {
+    for (int k = 0; k < d->n; k++) {
+        d->largest[k] = largest_of(d, k);
+    }
     for (int k = 0; k < d->n; k++) {
         const int row = bring_largest(d, k);
         const double *by = scaled_of(d, k);
@@ -51,11 +63,15 @@ static bool choose(const struct dalcs_dependencies *d) {
         d->chosen[k] = row;
         for (int other = k + 1; other < d->n; other++) {
             double *of = scaled_of(d, other);
+            if (of[row] == 0.0) {
+                continue;
+            }
             const double factor = of[row] / by[row];
             for (int r = 0; r < d->n_rows; r++) {
                 of[r] -= factor * by[r];
             }
             of[row] = 0.0;
+            d->largest[other] = largest_of(d, other);
         }
     }
     return true;

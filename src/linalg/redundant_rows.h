@@ -15,6 +15,7 @@ struct dalcs_dependencies {
     double *size;   /* [n_rows] what the terms of a row add up to */
     int *chosen;    /* [n] the rows to leave out */
     double *scaled; /* [n][n_rows] work */
+    int *largest;   /* [n] work: the row of the largest of these */
 };
 
 enum dalcs_status dalcs_dependencies_setup(struct dalcs_dependencies *d, struct dalcs_arena *arena,

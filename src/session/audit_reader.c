@@ -262,6 +262,12 @@ static void add_current(void *user, int index, int device, double factor,
     }
 }
 
+static bool tells_current(void *user, int device) {
+    const struct dalcs_audit_run *a = user;
+    const struct dalcs_readout *readout = a->run->s->network.readout;
+    return readout->start[device + 1] > readout->start[device];
+}
+
 static void add_lambda(void *user, int index, int lambda, double factor,
                        struct dalcs_audit_row *row) {
     const struct dalcs_audit_run *a = user;
@@ -280,6 +286,7 @@ struct dalcs_audit_reader dalcs_audit_reader_of(struct dalcs_audit_run *a) {
                                        .add_lambda = add_lambda,
                                        .read_columns = read_columns,
                                        .is_on = is_on,
+                                       .tells_current = tells_current,
                                        .read_before = read_before,
                                        .revisit = dalcs_audit_revisit,
                                        .go_back = dalcs_audit_go_back,
