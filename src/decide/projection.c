@@ -18,10 +18,11 @@ static const int projection[PROJECTIONS] = {30, 20, 10};
 
 /* What steps are tried for a projection. */
 struct lengths {
-    double tried; /* s, the step before them */
-    double limit; /* s, up to which one may go */
-    bool fixed;   /* the step is given */
-    int first;    /* of `projection`, in which the mode was seen */
+    double tried;  /* s, the step before them */
+    double limit;  /* s, up to which one may go */
+    bool fixed;    /* the step is given */
+    bool may_jump; /* states may */
+    int first;     /* of `projection`, in which the mode was seen */
 };
 
 /* Of try k, after a step of length `tried`. */
@@ -227,14 +228,38 @@ static enum dalcs_status look_longer(struct dalcs_radau_part *part, const struct
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
-/* Puts the states of one block where the last step, a projecting one, begins. */
+/* Is a state farther from there than an event's error takes it, over what is in the step that was tried before? In a mode that
+ * no problem has told, as where a switch has turned and the diodes around it have not, the current of a coil has no path:
+ * its way to there is a jump without an impulse that would be told. */
+static bool is_jump(const struct dalcs_radau_part *part) {
+    const struct dalcs_system *s = part->component->system;
+    const double *after = part->work.after;
+    double largest[2];
+    dalcs_micro_largest(part, largest);
+    dalcs_micro_raise(s, after, s->n_x, largest);
+    for (int node = 1; node <= part->stages.method->s; node++) {
+        dalcs_micro_raise(s, part->work.out_tried + (ptrdiff_t)node * part->stages.layout.stride,
+                          dalcs_system_n_equations(s), largest);
+    }
+    bool is = false;
+    for (int x = 0; x < s->n_x && !is; x++) {
+        const double most = dalcs_micro_noticeable(part) * largest[s->column_is_current[x]];
+        is = fabs(after[x] - part->x[x]) > most;
+    }
+    return is;
+}
+
+/* Puts the states of one block where the last step, a projecting one, begins, unless it *jumps. */
 static enum dalcs_status move_block(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                    const struct lengths *lengths, int of, bool *moved) {
+                                    const struct lengths *lengths, int of, bool *moved,
+                                    bool *jumps) {
     *moved = false;
     find_beginning(part, of, moved);
     if (of > 0) {
         DALCS_TRY(look_longer(part, lengths, of, moved));
     }
+    *jumps = *moved && !lengths->may_jump && is_jump(part);
+    *moved = *moved && !*jumps;
     if (*moved) {
         dalcs_radau_go_after(r, part);
     }
@@ -245,10 +270,10 @@ static enum dalcs_status move_block(struct dalcs_radau *r, struct dalcs_radau_pa
  * by what it is off, over the length of such a step, and what only reads it would follow that: so it is looked at again
  * from where the blocks before it are. */
 static enum dalcs_status move_in_order(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       const struct lengths *lengths, bool *moved) {
+                                       const struct lengths *lengths, bool *moved, bool *jumps) {
     int n_blocks = part->component->osnsp.partition.n_blocks;
     bool is_behind = false; /* the last step is another one, or a block has moved since */
-    for (int k = 0; k < n_blocks; k++) {
+    for (int k = 0; k < n_blocks && !*jumps; k++) {
         int of = n_blocks > 1 ? k : -1;
         if (!has_states(part, of)) {
             continue;
@@ -261,7 +286,7 @@ static enum dalcs_status move_in_order(struct dalcs_radau *r, struct dalcs_radau
             }
         }
         bool moves;
-        DALCS_TRY(move_block(r, part, lengths, of, &moves));
+        DALCS_TRY(move_block(r, part, lengths, of, &moves, jumps));
         *moved = *moved || moves;
         is_behind = moves || of > 0;
     }
@@ -269,7 +294,8 @@ static enum dalcs_status move_in_order(struct dalcs_radau *r, struct dalcs_radau
 }
 
 enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       double limit, bool fixed, enum dalcs_projection *told) {
+                                       double limit, bool fixed, bool may_jump,
+                                       enum dalcs_projection *told) {
     double tried = part->segment.h;
     bool moved = false;
     *told = DALCS_PROJECTION_BLIND;
@@ -277,7 +303,7 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
         return DALCS_OK;
     }
     dalcs_radau_swap_out(part, &part->work.out_tried);
-    struct lengths lengths = {tried, limit, fixed, -1};
+    struct lengths lengths = {tried, limit, fixed, may_jump, -1};
     bool means_something = false;
     enum dalcs_status status = DALCS_OK;
     while (!means_something && status >= DALCS_OK && ++lengths.first < PROJECTIONS) {
@@ -286,8 +312,11 @@ enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau
     }
     if (means_something) {
         DALCS_TRY(look_shorter(r, part, limit));
-        status = move_in_order(r, part, &lengths, &moved);
-        *told = moved ? DALCS_PROJECTION_MOVED : DALCS_PROJECTION_IN_PLACE;
+        bool jumps = false;
+        status = move_in_order(r, part, &lengths, &moved, &jumps);
+        *told = jumps   ? DALCS_PROJECTION_JUMPS
+                : moved ? DALCS_PROJECTION_MOVED
+                        : DALCS_PROJECTION_IN_PLACE;
     }
     if (moved) {
         return status;

@@ -11,13 +11,15 @@
 enum dalcs_projection {
     DALCS_PROJECTION_BLIND,    /* nothing: the mode is not seen in so short a step */
     DALCS_PROJECTION_IN_PLACE, /* the states are where the mode allows */
-    DALCS_PROJECTION_MOVED     /* they are now */
+    DALCS_PROJECTION_MOVED,    /* they are now */
+    DALCS_PROJECTION_JUMPS /* that is farther away than an event's error, and none has moved there */
 };
 
 /* For a state that is off as interpolation leaves it at an event. If there is nothing to move, the step that was
- * tried before is there again. limit: s, up to which a step may go; fixed: the step is given. */
+ * tried before is there again. limit: s, up to which a step may go; fixed: the step is given; may_jump: what it finds is a part
+ * of a jump that is told, else it moves no state farther than an event's error. */
 enum dalcs_status dalcs_projection_try(struct dalcs_radau *r, struct dalcs_radau_part *part,
-                                       double limit, bool fixed,
+                                       double limit, bool fixed, bool may_jump,
                                        enum dalcs_projection *told) DALCS_MUST_CHECK;
 
 /* May it find anything to move? Not where all states move in a projecting step by much more than their drift

@@ -26,8 +26,10 @@ enum dalcs_status dalcs_search_project(struct dalcs_radau *r, struct dalcs_radau
                                        struct dalcs_search *search, bool *moved) {
     enum dalcs_projection told;
     search->projected = true;
-    enum dalcs_status status = dalcs_projection_try(r, part, search->limit, search->fixed, &told);
+    enum dalcs_status status =
+        dalcs_projection_try(r, part, search->limit, search->fixed, false, &told);
     *moved = told == DALCS_PROJECTION_MOVED;
+    search->jumps = told == DALCS_PROJECTION_JUMPS;
     return status;
 }
 
@@ -199,6 +201,10 @@ static enum dalcs_status doubt_mode(struct dalcs_radau *r, struct dalcs_radau_pa
         return DALCS_OK;
     }
     DALCS_TRY(dalcs_search_project(r, part, search, answered));
+    if (search->jumps) {
+        *answered = true;
+        return DALCS_OK;
+    }
     if (*answered && search->errors.stuck > 0) { /* steps are short for what the state was off by */
         dalcs_search_start_over(part, search, search->errors.level);
     }

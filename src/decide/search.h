@@ -51,6 +51,8 @@ struct dalcs_search {
 
     bool opened; /* they are on their other sides now, to try */
     bool projected;
+    bool
+        jumps; /* a state would, in the mode of the last step, by what no problem has told: the mode is wrong */
     enum dalcs_settling settling;
     bool states_free; /* in the mode of the last step, which has nothing to project on */
 

@@ -130,7 +130,7 @@ static enum dalcs_status place_on_nodes(struct dalcs_radau *r, struct dalcs_rada
     const struct dalcs_observer *observer = r->base->listener.observer;
     r->base->listener.observer = NULL; /* the whole jump is told, and nothing of this try */
     enum dalcs_status status = dalcs_projection_try(r, part, dalcs_radau_limit(r, part),
-                                                    r->options.fixed_step > 0.0, &told);
+                                                    r->options.fixed_step > 0.0, true, &told);
     r->base->listener.observer = observer;
     const bool sees = status == DALCS_OK && told != DALCS_PROJECTION_BLIND;
     for (int x = 0; sees && x < p->system->n_x; x++) {

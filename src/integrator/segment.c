@@ -248,7 +248,7 @@ static enum dalcs_status check_poles(struct dalcs_radau *r, struct dalcs_radau_p
 static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part *part,
                                   struct dalcs_search *search, bool *done) {
     struct dalcs_trial trial = {.quality = {.ratio = NAN, .own = INFINITY}};
-    if (part->guards.slides) {
+    if (part->guards.slides || search->jumps) {
         *done = true;
         return dalcs_search_fall_back(r, part, search->limit, search->first_level, INFINITY);
     }
@@ -256,7 +256,7 @@ static enum dalcs_status try_step(struct dalcs_radau *r, struct dalcs_radau_part
     if (trial.holds && is_worth_projecting(part, search, &trial.quality)) {
         bool moved;
         DALCS_TRY(dalcs_search_project(r, part, search, &moved));
-        if (moved) {
+        if (moved || search->jumps) {
             return DALCS_OK;
         }
         DALCS_TRY(dalcs_stages_get(&part->stages, part->component->osnsp.mode, part->segment.h,
