@@ -242,7 +242,7 @@ static enum dalcs_status find_other(struct dalcs_positions *p, double sigma, con
 
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) {
-    p->moved = p->alternates = false;
+    p->moved = p->alternates = p->are_led = false;
     p->settled = true;
     p->has_first = false;
     if (p->n == 0) {
