@@ -23,7 +23,9 @@ struct dalcs_positions {
     bool has_first; /* the positions that it began from had an answer */
     bool
         alternates; /* if not: all that want to move go to and fro, and stand otherwise in two positions, each with an answer */
-    bool are_led;   /* so do jumps of formulas, and switches with them (led_jumps.c) */
+    bool
+        goes_on; /* a slide does, between the same two positions: p->other is the mode in the other one, a step ago */
+    bool are_led;              /* so do jumps of formulas, and switches with them (led_jumps.c) */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
     bool joined;               /* sliding.h */
