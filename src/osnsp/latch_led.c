@@ -17,13 +17,11 @@ struct additions {
     struct dalcs_latch_loops whole, half;
 };
 
-static enum dalcs_status find_both(struct dalcs_osnsp *p, double sigma, const double *u,
-                                   struct additions *of) {
-    const size_t bytes = (size_t)p->n_words * sizeof(*p->mode);
-    memcpy(p->mode, p->latches.mode, bytes);
-    DALCS_TRY(dalcs_latch_find_additions(p, 2.0 * sigma, u, &of->half));
-    memcpy(p->mode, p->latches.mode, bytes);
-    return dalcs_latch_find_additions(p, sigma, u, &of->whole);
+/* In the mode of the answer kept. */
+static enum dalcs_status find_additions(struct dalcs_osnsp *p, double sigma, const double *u,
+                                        struct dalcs_latch_loops *of) {
+    memcpy(p->mode, p->latches.mode, (size_t)p->n_words * sizeof(*p->mode));
+    return dalcs_latch_find_additions(p, sigma, u, of);
 }
 
 /* What goes by way of a state vanishes with the step. */
@@ -92,9 +90,12 @@ enum dalcs_status dalcs_latch_led_find(struct dalcs_osnsp *p, double sigma, cons
     if (of->n < 2 || !(sigma > 0.0)) {
         return DALCS_OK;
     }
-    DALCS_TRY(find_both(p, sigma, u, &both));
+    DALCS_TRY(find_additions(p, 2.0 * sigma, u, &both.half));
     if (leave_out(&both)) {
-        DALCS_TRY(find_both(p, sigma, u, &both));
+        DALCS_TRY(find_additions(p, 2.0 * sigma, u, &both.half));
+        DALCS_TRY(find_additions(p, sigma, u, &both.whole));
+    } else { /* the step's own problem is the last one */
+        DALCS_TRY(dalcs_osnsp_answer_given(p, sigma, u, p->latches.y));
     }
     note_roles(p, &both);
     return DALCS_OK;

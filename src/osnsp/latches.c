@@ -110,7 +110,8 @@ static enum dalcs_status hold(struct dalcs_osnsp *p, double sigma, const double 
     }
     keep_answer(p, &kept);
     enum dalcs_status status = dalcs_latch_loops_find(p, sigma, u, &of, &holding);
-    if (status == DALCS_OK && holding == 0 && !is_mode_known) {
+    if (status == DALCS_OK && holding == 0 &&
+        !(is_mode_known && p->latches.sigma > 0.0)) { /* at rest there are no steps */
         status = dalcs_latch_led_find(p, sigma, u, &of);
     }
     put_answer_back(p, &kept);

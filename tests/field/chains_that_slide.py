@@ -75,6 +75,16 @@ def check_coupled(checker, program):
             checker.check(abs(result.column(signal)[-1] - value) <= 1e-8, f"coupled: {signal} is {result.column(signal)[-1]}")
 
 
+def check_start(checker, program):
+    """An operating point has the answer of the formulas; behind it they go from side to side."""
+    elements, part = CHAINS["two"]
+    netlist = f"start\nvt t 0 0.7\n{elements}.tran 0.5u 10u\n.end\n"
+    result = dalcs_program.run(program, netlist, method=None, options=["--audit", "full"])
+    if checker.check(result.status == 0, f"start: {result.stderr}"):
+        worst = max(abs(value - part(0.7, 0.0)) for value in result.column("v(q2)")[1:])
+        checker.check(worst <= 1e-6, f"start: v(q2) off by {worst:.2e}")
+
+
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     checker = dalcs_program.Checker("chains that slide")
@@ -82,6 +92,7 @@ def main():
         for threshold in THRESHOLDS:
             check_chain(checker, program, f"{chain}, {threshold}", chain, threshold)
     check_coupled(checker, program)
+    check_start(checker, program)
     return checker.finish()
 
 
