@@ -55,6 +55,7 @@ enum dalcs_status dalcs_radau_implicit_step(struct dalcs_radau *r, struct dalcs_
     if (status != DALCS_OK) {
         return dalcs_micro_fail(r, part, sigma, part->work.u, status);
     }
+    DALCS_TRY(dalcs_positions_part_led(&c->positions, sigma, part->work.u, y));
     part->guards.slides = part->guards.slides || !c->positions.settled;
     if (c->osnsp.certificate.worst > r->base->worst.certificate.worst) {
         r->base->worst.certificate = c->osnsp.certificate;

@@ -75,6 +75,7 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
     of->slides = false;
     enum dalcs_status status =
         dalcs_radau_implicit_step(r, part, step->h, step->tau, step->state, step->y);
+    c->positions.goes_on = false;
     if (status != DALCS_OK || !c->positions.alternates) {
         return status < DALCS_OK ? status : DALCS_OK; /* without an answer it does not slide */
     }
@@ -84,6 +85,7 @@ static enum dalcs_status mean_step(struct dalcs_radau *r, struct dalcs_radau_par
         dalcs_sliding_mean(&c->positions, 1.0 / step->h, part->work.u, step->y, &sides, &noise));
     of->slides = sides.n > 0 && (of->begins || of->may_change || !c->positions.sides.have_changed);
     of->begins = false;
+    c->positions.goes_on = of->slides && sides.n == 2;
     if (!of->slides) {
         return DALCS_OK;
     }
@@ -235,7 +237,7 @@ enum dalcs_status dalcs_slide_attempt(struct dalcs_radau *r, struct dalcs_radau_
     for (int j = ORDER; j > 0 && of->slides; j--) {
         DALCS_TRY(run_sequence(r, part, j, of));
     }
-    part->guards.slides = false;
+    part->guards.slides = part->component->positions.goes_on = false;
     of->states = of->pairs = of->bare = INFINITY;
     if (of->slides) {
         put_voltages(part, of);
@@ -279,6 +281,6 @@ enum dalcs_status dalcs_slide_micro_steps(struct dalcs_radau *r, struct dalcs_ra
         DALCS_TRY(mean_step(r, part, &second, &of));
     }
     *slides = of.slides;
-    part->guards.slides = false;
+    part->guards.slides = part->component->positions.goes_on = false;
     return DALCS_OK;
 }

@@ -101,6 +101,9 @@ static enum dalcs_status move_all(struct dalcs_positions *p, double sigma, const
         for (int k = 0; k < p->osnsp->n_words; k++) {
             p->turned[k] |= (p->osnsp->mode[k] ^ p->present[k]) & p->mask[k];
         }
+        if (p->goes_on && round == 1 && are_same(p, p->osnsp->mode, p->other)) {
+            go_back(p, p->other); /* diodes and formulas, too: the step before has ended there */
+        }
         keep_other(p, y);
         DALCS_TRY(dalcs_osnsp_solve(p->osnsp, sigma, u, y));
     }
@@ -242,7 +245,7 @@ static enum dalcs_status find_other(struct dalcs_positions *p, double sigma, con
 
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) {
-    p->moved = p->alternates = false;
+    p->moved = p->alternates = p->are_led = false;
     p->settled = true;
     p->has_first = false;
     if (p->n == 0) {

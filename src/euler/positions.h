@@ -23,6 +23,9 @@ struct dalcs_positions {
     bool has_first; /* the positions that it began from had an answer */
     bool
         alternates; /* if not: all that want to move go to and fro, and stand otherwise in two positions, each with an answer */
+    bool
+        goes_on; /* a slide does, between the same two positions: p->other is the mode in the other one, a step ago */
+    bool are_led;              /* so do jumps of formulas, and switches with them (led_jumps.c) */
     double *other_y, *other_w; /* then: the answer in the other one, [n_columns] and [n_pairs] */
     uint64_t *other;           /* and its mode, [n_words] */
     bool joined;               /* sliding.h */
@@ -55,6 +58,11 @@ struct dalcs_positions {
     } tried;
 };
 
+/* May something stand between two positions: a switch, or a jump that another one leads? */
+static inline bool dalcs_positions_may_slide(const struct dalcs_positions *p) {
+    return p->n > 0 || p->n_jumps > 1;
+}
+
 /* Those of a system; memory of `arena`, but for what is rarely needed. */
 enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_osnsp *osnsp,
                                         struct dalcs_arena *arena) DALCS_MUST_CHECK;
@@ -66,6 +74,11 @@ void dalcs_positions_finish(struct dalcs_positions *p);
  * positions without an answer; p->osnsp->mode and its witness are such ones. */
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
+
+/* Behind it, where jumps of formulas are led (osnsp.h): the answer on one side of those that lead, if it has them there; else
+ * on both, as of switches that alternate. */
+enum dalcs_status dalcs_positions_part_led(struct dalcs_positions *p, double sigma, const double *u,
+                                           double *y) DALCS_MUST_CHECK;
 
 /* The same at an instant, without a step. Where none agree it is the answer in the positions that were there, if it has one. */
 enum dalcs_status dalcs_positions_solve_at_rest(struct dalcs_positions *p, const double *u,

@@ -32,11 +32,12 @@ enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_
     for (int d = 0; d < s->n_pairs; d++) {
         p->n += s->pair[d].kind == DALCS_PAIR_SWITCH && !s->pair[d].is_direct ? 1 : 0;
     }
-    if (p->n == 0) {
-        return DALCS_OK;
-    }
     for (int d = 0; d < s->n_pairs; d++) {
         p->n_jumps += s->pair[d].is_jump ? 1 : 0;
+    }
+    if (!dalcs_positions_may_slide(p)) {
+        p->n_jumps = 0;
+        return DALCS_OK;
     }
     const size_t n_turning = (size_t)p->n + (size_t)p->n_jumps;
     p->jump = dalcs_arena_alloc(arena, (size_t)p->n_jumps, sizeof(int));

@@ -85,10 +85,32 @@ static enum dalcs_status solve_corner(struct dalcs_positions *p, const double *u
     return DALCS_OK;
 }
 
+/* The same where comparators follow those that lead (led_jumps.c). */
+static enum dalcs_status solve_led_corner(struct dalcs_positions *p, const double *u, int corner,
+                                          bool *is_complete) {
+    struct dalcs_osnsp *o = p->osnsp;
+    double *y = dalcs_corner_y(p, corner);
+    memcpy(o->mode, p->present, (size_t)o->n_words * sizeof(*o->mode));
+    put_leading(p, corner);
+    for (int round = 0; round <= 2 * p->n && !*is_complete; round++) {
+        DALCS_TRY(dalcs_osnsp_answer_led(o, p->sides.sigma, u, y, is_complete));
+        if (!*is_complete) {
+            return DALCS_OK;
+        }
+        *is_complete = !put_switches(p, y);
+    }
+    return DALCS_OK;
+}
+
 static enum dalcs_status find_corner(struct dalcs_positions *p, const double *u, int corner,
                                      bool *is_complete) {
     const struct dalcs_osnsp *o = p->osnsp;
-    DALCS_TRY(find_corner_by(p, u, corner, false, is_complete));
+    *is_complete = false;
+    if (p->are_led) {
+        DALCS_TRY(solve_led_corner(p, u, corner, is_complete));
+    } else {
+        DALCS_TRY(find_corner_by(p, u, corner, false, is_complete));
+    }
     if (!*is_complete && p->n_jumps > 0) {
         DALCS_TRY(find_corner_by(p, u, corner, true, is_complete));
     }

@@ -132,11 +132,25 @@ static enum dalcs_status find_new_gaps(struct dalcs_positions *p, double sigma, 
     return status < DALCS_OK ? status : DALCS_OK;
 }
 
+/* Where comparators go from side to side together it is known which of them lead (led_jumps.c). */
+static void note_led(struct dalcs_positions *p) {
+    for (int i = 0; i < dalcs_turning_n(p); i++) {
+        if (dalcs_turning_turns(p, i) && !p->is_compared[i]) {
+            const enum dalcs_latch_role *role = p->osnsp->latches.role;
+            p->follows[i] = i < p->n || role[i - p->n] != DALCS_LATCH_LEADS;
+            p->is_compared[i] = true;
+        }
+    }
+}
+
 enum dalcs_status dalcs_turning_compare_new(struct dalcs_positions *p, double sigma,
                                             const double *u, const double *y) {
     const size_t n_pairs = (size_t)p->osnsp->system->n_pairs;
     const bool may_be = p->n_jumps > 0 && p->osnsp->system->n_x > 0;
     bool any = false;
+    if (p->are_led) {
+        note_led(p);
+    }
     for (int i = 0; i < dalcs_turning_n(p) && may_be; i++) {
         any = any || (dalcs_turning_turns(p, i) && !p->is_compared[i]);
     }

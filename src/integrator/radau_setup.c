@@ -91,7 +91,7 @@ static enum dalcs_status allocate(struct dalcs_radau_part *part) {
     part->work.before = dalcs_arena_alloc(&part->arena, (size_t)s->n_x, sizeof(double));
     part->work.size =
         dalcs_arena_alloc(&part->arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
-    const bool slides = part->component->positions.n > 0;
+    const bool slides = dalcs_positions_may_slide(&part->component->positions);
     if (slides) {
         part->work.node_w = dalcs_arena_alloc(&part->arena, (size_t)l->n_nodes * (size_t)s->n_pairs,
                                               sizeof(double));

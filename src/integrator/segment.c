@@ -68,6 +68,18 @@ static bool is_between_sides(const struct dalcs_radau_part *part) {
     return is;
 }
 
+/* At the start of a run: are several jumps between their sides? At an operating point they may be where no delay leaves them. */
+static bool starts_between_sides(const struct dalcs_radau_part *part) {
+    const struct dalcs_osnsp *p = &part->component->osnsp;
+    int n = 0;
+    for (int d = 0; d + 1 < p->system->n_pairs && !(part->segment.t > 0.0); d++) {
+        n += p->system->pair[d].is_jump && dalcs_osnsp_is_on(p, d) && !dalcs_osnsp_is_on(p, d + 1)
+                 ? 1
+                 : 0;
+    }
+    return n > 1;
+}
+
 static double step_to_try(const struct dalcs_radau *r, struct dalcs_radau_part *part,
                           double limit) {
     if (part->component->circuit->control.n_delayed >
@@ -290,7 +302,8 @@ static enum dalcs_status look_for_segment(struct dalcs_radau *r, struct dalcs_ra
                                   .fixed = r->options.fixed_step > 0.0,
                                   .guessed = guessed,
                                   .errors.before = INFINITY};
-    bool asks = (is_commutation(part) || is_between_sides(part)) && !guessed && !search.fixed;
+    bool asks = (is_commutation(part) || is_between_sides(part) || starts_between_sides(part)) &&
+                !guessed && !search.fixed;
     if (part->guards.fresh && part->guards.flipped && !guessed && !asks &&
         part->memory.fronts_refused < MOST_FRONTS_REFUSED) {
         DALCS_TRY(dalcs_front_close(part, &search.front));

@@ -27,8 +27,8 @@ static double find_added(const struct dalcs_osnsp *p, double above, double below
     return fabs(above - below) > rounding ? above - below : 0.0;
 }
 
-static enum dalcs_status find_additions(struct dalcs_osnsp *p, double sigma, const double *u,
-                                        struct dalcs_latch_loops *of) {
+enum dalcs_status dalcs_latch_find_additions(struct dalcs_osnsp *p, double sigma, const double *u,
+                                             struct dalcs_latch_loops *of) {
     double *y = p->latches.y;
     double below[DALCS_MOST_LATCHES];
     for (int k = 0; k < of->n; k++) {
@@ -129,7 +129,7 @@ enum dalcs_status dalcs_latch_loops_find(struct dalcs_osnsp *p, double sigma, co
                                          struct dalcs_latch_loops *of, uint32_t *holding) {
     uint32_t reach[DALCS_MOST_LATCHES];
     *holding = 0;
-    DALCS_TRY(find_additions(p, sigma, u, of));
+    DALCS_TRY(dalcs_latch_find_additions(p, sigma, u, of));
     find_reach(of, reach);
     for (int k = 0; k < of->n; k++) {
         uint32_t loop = 0;

@@ -35,9 +35,10 @@ enum dalcs_status dalcs_latches_setup(struct dalcs_osnsp *p) {
     l->y = dalcs_arena_alloc(&p->arena, (size_t)dalcs_system_n_columns(s), sizeof(double));
     l->w = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(double));
     l->tied = dalcs_arena_alloc(&p->arena, n_pairs, sizeof(bool));
+    l->role = dalcs_arena_alloc(&p->arena, (size_t)l->n, sizeof(*l->role));
     if (l->jump == NULL || l->before == NULL || l->mode == NULL || l->rests == NULL ||
         l->last == NULL || l->met == NULL || l->kept_y == NULL || l->y == NULL || l->w == NULL ||
-        l->tied == NULL) {
+        l->tied == NULL || l->role == NULL) {
         return DALCS_E_NOMEM;
     }
     for (int d = 0, k = 0; d < s->n_pairs; d++) {
@@ -102,13 +103,17 @@ static enum dalcs_status hold(struct dalcs_osnsp *p, double sigma, const double 
     struct kept_answer kept;
     *any = false;
     list_between(p, &of);
-    const bool is_known = p->latches.is_known && p->latches.sigma == sigma &&
-                          memcmp(p->latches.rests, p->mode, mode_bytes(p)) == 0;
-    if (of.n == 0 || of.n > DALCS_MOST_LATCHES || is_known) {
+    const bool is_mode_known =
+        p->latches.is_known && memcmp(p->latches.rests, p->mode, mode_bytes(p)) == 0;
+    if (of.n == 0 || of.n > DALCS_MOST_LATCHES || (is_mode_known && p->latches.sigma == sigma)) {
         return DALCS_OK;
     }
     keep_answer(p, &kept);
     enum dalcs_status status = dalcs_latch_loops_find(p, sigma, u, &of, &holding);
+    if (status == DALCS_OK && holding == 0 &&
+        !(is_mode_known && p->latches.sigma > 0.0)) { /* at rest there are no steps */
+        status = dalcs_latch_led_find(p, sigma, u, &of);
+    }
     put_answer_back(p, &kept);
     for (int k = 0; k < of.n && status == DALCS_OK; k++) {
         if ((holding >> k & 1) != 0) {

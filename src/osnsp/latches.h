@@ -21,6 +21,14 @@ enum dalcs_status dalcs_latch_loops_find(struct dalcs_osnsp *p, double sigma, co
                                          struct dalcs_latch_loops *of,
                                          uint32_t *holding) DALCS_MUST_CHECK;
 
+/* What the outputs of those in `of` add to their arguments, into of->adds, in the mode p->mode. All are below behind it. */
+enum dalcs_status dalcs_latch_find_additions(struct dalcs_osnsp *p, double sigma, const double *u,
+                                             struct dalcs_latch_loops *of) DALCS_MUST_CHECK;
+
+/* latch_led.c: which of those in `of` are led, of the answer kept, into p->latches. As dalcs_latch_loops_find(). */
+enum dalcs_status dalcs_latch_led_find(struct dalcs_osnsp *p, double sigma, const double *u,
+                                       const struct dalcs_latch_loops *of) DALCS_MUST_CHECK;
+
 /* The argument of a jump, in y and p->w, by its first pair. */
 double dalcs_latch_argument(const struct dalcs_osnsp *p, const double *y, int d);
 

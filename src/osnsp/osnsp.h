@@ -169,6 +169,14 @@ struct dalcs_osnsp_latches {
         is_known; /* the last mode in which none of those between their sides holds itself is in `rests` */
     uint64_t *rests; /* [n_words] */
     double sigma;    /* and its step */
+    int n_led;       /* of them in `rests`: they are led (latch_led.c) */
+
+    enum dalcs_latch_role {
+        DALCS_LATCH_FREE,
+        DALCS_LATCH_LEADS,
+        DALCS_LATCH_LED
+    } *
+        role; /* [n] there */
 };
 
 /* What has no meaning between two problems. */
@@ -237,6 +245,15 @@ enum dalcs_status dalcs_osnsp_solve(struct dalcs_osnsp *p, double sigma, const d
  * DALCS_OK: the mode has none, or none was found in it for smooth sources. */
 enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u,
                                      double *y) DALCS_MUST_CHECK;
+
+/* Behind dalcs_osnsp_solve() at sigma: are jumps between their sides led, so that the answer is none of comparators that have a
+ * small delay? */
+bool dalcs_osnsp_has_led(const struct dalcs_osnsp *p);
+
+/* Then: the answer where those that lead are on the sides that p->mode has them on, and those that are led go where it has them.
+ * *found: there is one. */
+enum dalcs_status dalcs_osnsp_answer_led(struct dalcs_osnsp *p, double sigma, const double *u,
+                                         double *y, bool *found) DALCS_MUST_CHECK;
 
 /* The lines of smooth sources become those of their tangents at the arguments that newton->x holds, where one differs by
  * a factor beyond ten from what it is, or where rounding of a line hides a function that is something beside the largest

@@ -18,14 +18,22 @@ static void warn_of_columns(struct dalcs_run *r) {
 
 void dalcs_run_warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
     if (c->commands.n_slid > 0) {
+        const bool has_switches = c->positions.n > 0;
         dalcs_diag_add(
             &r->s->diag, DALCS_WARNING, NULL,
-            "a hysteresis, Vh=, keeps it from switching without end; .meas and .losses "
-            "have rms values and powers of the positions",
-            "in %ld step%s a switch slides along its threshold: closing turns its "
-            "control off, opening turns it on; values are means of both positions, and rms "
+            has_switches
+                ? "a hysteresis, Vh=, keeps it from switching without end; .meas and .losses "
+                  "have rms values and powers of the positions"
+                : "a hysteresis in its formula keeps it from switching without end; .meas and "
+                  ".losses have rms values and powers of both sides",
+            "in %ld step%s %s; values are means of both %s, and rms "
             "values and products made of rows are those of means",
-            c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s");
+            c->commands.n_slid, c->commands.n_slid == 1 ? "" : "s",
+            has_switches ? "a switch slides along its threshold: closing turns its control off, "
+                           "opening turns it on"
+                         : "a comparator slides along its threshold, and others read its output: "
+                           "each side leads to the other one",
+            has_switches ? "positions" : "sides");
         warn_of_columns(r);
     }
     if (c->commands.n_delayed == 0 || c->failure.restless.pair >= 0) { /* an error says it */
