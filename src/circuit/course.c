@@ -37,7 +37,7 @@ static void add_term(const struct dalcs_stimulus_term *term, struct dalcs_course
     if (size == 0.0) {
         return;
     }
-    const double speed = hypot(term->decay, term->omega);
+    const double speed = term->decay == 0.0 ? fabs(term->omega) : hypot(term->decay, term->omega);
     double grown = size;
     c->value += cosine;
     if (term->decay < 0.0) { /* it grows by a factor of e up to there */

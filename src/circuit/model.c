@@ -128,10 +128,10 @@ static bool number_of(const struct dalcs_token *token, double *value) {
     return ok;
 }
 
-/* r=, c= and l=, cap= and ind= of the model's own type. */
+/* r=, c= and l=, res=, cap= and ind= of the model's own type. */
 static bool is_value_of(const struct dalcs_model *model, const char *name) {
     const char type = model->type->text[0];
-    return type == 'r'   ? strcmp(name, "r") == 0
+    return type == 'r'   ? strcmp(name, "r") == 0 || strcmp(name, "res") == 0
            : type == 'c' ? strcmp(name, "c") == 0 || strcmp(name, "cap") == 0
                          : strcmp(name, "l") == 0 || strcmp(name, "ind") == 0;
 }

@@ -47,7 +47,7 @@ struct course {
 
 static void add_term(const struct dalcs_stimulus_term *term, double factor, struct course *c) {
     double size = fabs(factor) * hypot(term->cosine, term->sine);
-    double speed = hypot(term->decay, term->omega);
+    double speed = term->decay == 0.0 ? fabs(term->omega) : hypot(term->decay, term->omega);
     c->of.value += factor * term->cosine;
     c->of.derivative[0] += factor * (term->omega * term->sine - term->decay * term->cosine);
     c->size += size;
