@@ -6,15 +6,20 @@
 #include "steady_step.h"
 #include "steady_verdict.h"
 
-/* *found: one was. */
-static enum dalcs_status search(struct dalcs_steady *st, bool *found) {
+/* Periods of runs of the first searches from either start: most circuits need no more. A search from kilovolts goes on for
+ * thousands of periods, and from rest it may be over behind two. */
+enum { FEW = 1 };
+
+/* Of `most` periods. *found: one was. */
+static enum dalcs_status search(struct dalcs_steady *st, long most, bool *found) {
     struct dalcs_session *s = st->run->s;
     const struct dalcs_diag_mark mark = dalcs_diag_mark(&s->diag);
     bool endless = false;
     st->has_point = false;
+    st->crowd.work = 0.0; /* that of the other start says nothing of this one */
     s->circuit.analyses.transient.use_initial_conditions = true;
     dalcs_steady_limit_crowd(st, true);
-    const enum dalcs_status status = dalcs_steady_search(st, found, &endless);
+    const enum dalcs_status status = dalcs_steady_search(st, most, found, &endless);
     dalcs_steady_limit_crowd(st, false);
     *found = status == DALCS_OK && *found;
     s->circuit.analyses.transient.use_initial_conditions = *found;
@@ -23,6 +28,33 @@ static enum dalcs_status search(struct dalcs_steady *st, bool *found) {
         return DALCS_OK;
     }
     return status;
+}
+
+static void tell(struct dalcs_steady *st) {
+    dalcs_diag_add(&st->run->s->diag, DALCS_NOTE, NULL, NULL,
+                   "from the operating point no steady state was found; this one was found "
+                   "from IC= and 0, as with uic");
+}
+
+enum dalcs_status dalcs_steady_search_early(struct dalcs_steady *st, bool *found, bool *endless) {
+    struct dalcs_session *s = st->run->s;
+    if (s->circuit.analyses.transient.use_initial_conditions) {
+        return DALCS_OK;
+    }
+    dalcs_steady_limit_crowd(st, true);
+    const enum dalcs_status status = dalcs_steady_search(st, FEW, found, endless);
+    dalcs_steady_limit_crowd(st, false);
+    if (status != DALCS_OK || *found || *endless) {
+        return status;
+    }
+    DALCS_TRY(search(st, FEW, found));
+    if (*found) {
+        tell(st);
+        return DALCS_OK;
+    }
+    st->has_point = false;
+    st->crowd.work = 0.0;
+    return DALCS_OK;
 }
 
 enum dalcs_status dalcs_steady_search_from_rest(struct dalcs_steady *st,
@@ -37,11 +69,9 @@ enum dalcs_status dalcs_steady_search_from_rest(struct dalcs_steady *st,
         return DALCS_E_NOMEM;
     }
     dalcs_steady_copy_point(st, &last, &st->at);
-    DALCS_TRY(search(st, found));
+    DALCS_TRY(search(st, DALCS_STEADY_PERIODS, found));
     if (*found) {
-        dalcs_diag_add(&s->diag, DALCS_NOTE, NULL, NULL,
-                       "from the operating point no steady state was found; this one was found "
-                       "from IC= and 0, as with uic");
+        tell(st);
         return DALCS_OK;
     }
     dalcs_steady_copy_point(st, &st->at, &last);
