@@ -16,9 +16,6 @@
 /* MOST_SHORTER: steps of a burst that are shorter than Newton's method has them. */
 enum { MOST_SHORTER = 10, MOST_UNHELPFUL = 4, MOST_LEAPS = 24 };
 
-/* Periods of runs between bursts, in all. */
-static const long most_periods = 4096;
-
 /* A residual with which it is done. */
 static const double converged = 1e-11;
 
@@ -289,7 +286,15 @@ static enum dalcs_status leave(struct dalcs_steady *st, struct search *s, bool *
     return DALCS_OK;
 }
 
-/* A burst from s->run; where it ends nowhere, leaps, and one from where they have led. */
+/* From s->run along the states of circuits that leak (steady_homotopy.c), and a burst from where they have led. */
+static enum dalcs_status try_leaking(struct dalcs_steady *st, const struct search *s, bool *found) {
+    bool is_near;
+    dalcs_steady_copy_point(st, &st->at, &s->run);
+    DALCS_TRY(dalcs_steady_follow(st, &is_near));
+    return is_near ? burst_on(st, found) : DALCS_OK; /* the last pass is from there, with M */
+}
+
+/* A burst from s->run; where it ends nowhere, two ways to where another one may begin. */
 static enum dalcs_status try_from_run(struct dalcs_steady *st, const struct search *s,
                                       bool *found) {
     bool is_near;
@@ -301,19 +306,21 @@ static enum dalcs_status try_from_run(struct dalcs_steady *st, const struct sear
     dalcs_steady_copy_point(st, &st->at, &s->run);
     DALCS_TRY(dalcs_steady_continue(st, s->total, &is_near));
     DALCS_TRY(is_near ? burst_on(st, found) : DALCS_OK); /* the last pass is from there, with M */
-    st->kept.is_stuck = false;                           /* the run is not */
+    DALCS_TRY(*found ? DALCS_OK : try_leaking(st, s, found));
+    st->kept.is_stuck = false; /* the run is not */
     return DALCS_OK;
 }
 
-enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found, bool *endless) {
+enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, long most, bool *found,
+                                      bool *endless) {
     struct search s = {.wait = 1, .may_leap = true};
     if (!make_points(st, &s)) {
         return DALCS_E_NOMEM;
     }
     *found = *endless = false;
     while (!*found && !*endless && !dalcs_steady_is_crowded(st, NULL) &&
-           (s.total <= most_periods || (s.has_leapt && s.may_leap))) {
-        if (s.total > most_periods) {
+           (s.total <= most || (s.has_leapt && s.may_leap))) {
+        if (s.total > most) {
             go_back(st, &s);
         }
         DALCS_TRY(dalcs_steady_pass(st, s.wait, DALCS_STEADY_PLAIN));

@@ -34,7 +34,10 @@ struct dalcs_orbit_point {
     const struct dalcs_steady_layout *layout;
 };
 
-enum { DALCS_STEADY_STEPS = 10 }; /* of Newton's method in a row */
+enum {
+    DALCS_STEADY_STEPS = 10,    /* of Newton's method in a row */
+    DALCS_STEADY_PERIODS = 4096 /* of runs between bursts of them, in all */
+};
 
 struct dalcs_steady {
     struct dalcs_run *run;
@@ -224,8 +227,8 @@ enum dalcs_status dalcs_steady_refine(struct dalcs_steady *st,
 /* Room for one, as long as st lives; false: there is none. */
 bool dalcs_steady_make_point(struct dalcs_steady *st, struct dalcs_orbit_point *point);
 /* From where any run starts to *found: st->at comes back, and the last pass is from there. *endless: there is none, as
- * st->drift goes on and on. */
-enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, bool *found,
+ * st->drift goes on and on. Behind more than `most` periods of runs it ends. */
+enum dalcs_status dalcs_steady_search(struct dalcs_steady *st, long most, bool *found,
                                       bool *endless) DALCS_MUST_CHECK;
 
 /* ---- steady_continuation.c --------------------------------------------------------------------- */
@@ -242,7 +245,16 @@ enum dalcs_status dalcs_steady_find_leap(const struct dalcs_steady *st, const do
 /* Of [n_x], in units in which energies are alike. */
 double dalcs_steady_size(const struct dalcs_steady *st, const double *x);
 
+/* ---- steady_homotopy.c ------------------------------------------------------------------------- */
+
+/* From st->at on along the periodic states of circuits that leak less and less; *is_near: it has come to where Newton's method
+ * may begin again, and the last pass, with M, is from there. */
+enum dalcs_status dalcs_steady_follow(struct dalcs_steady *st, bool *is_near) DALCS_MUST_CHECK;
+
 /* ---- steady_shorter.c -------------------------------------------------------------------------- */
+
+/* The largest of x [n_x], each over its largest value in the last pass and that of the base. */
+double dalcs_steady_relative_size(const struct dalcs_steady *st, const double *x);
 
 /* The last pass, with M, is where a step begins. */
 void dalcs_steady_note_base(struct dalcs_steady *st);

@@ -100,7 +100,7 @@ static enum dalcs_status take_repeats(struct dalcs_steady *st, bool uic) {
 /* From where any run starts, unless events crowd. */
 static enum dalcs_status search_within(struct dalcs_steady *st, bool *found, bool *endless) {
     dalcs_steady_limit_crowd(st, true);
-    const enum dalcs_status status = dalcs_steady_search(st, found, endless);
+    const enum dalcs_status status = dalcs_steady_search(st, DALCS_STEADY_PERIODS, found, endless);
     const bool is_over = status >= DALCS_OK && !*found && dalcs_steady_is_crowded(st, NULL);
     dalcs_steady_limit_crowd(st, false);
     return is_over ? dalcs_steady_tell_crowd(st) : status;
@@ -119,7 +119,8 @@ static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leav
         st->period *= n_periods;
         return n_periods > 1.0 ? dalcs_steady_pass(st, 1, DALCS_STEADY_M) : DALCS_OK;
     }
-    DALCS_TRY(found ? DALCS_OK : search_within(st, &found, &endless));
+    DALCS_TRY(found ? DALCS_OK : dalcs_steady_search_early(st, &found, &endless));
+    DALCS_TRY(found || endless ? DALCS_OK : search_within(st, &found, &endless));
     if (!found && !endless) {
         DALCS_TRY(dalcs_steady_look_ahead(st, &found, &attractor));
         DALCS_TRY(found ? DALCS_OK : dalcs_steady_search_from_rest(st, &attractor, &found));

@@ -32,8 +32,7 @@ void dalcs_steady_note_base(struct dalcs_steady *st) {
     memcpy(b->scale, st->scale, (size_t)st->layout.n_x * sizeof(double));
 }
 
-/* The largest of the states' x, each over its largest value in the passes of both ends of the step. */
-static double size_of(const struct dalcs_steady *st, const double *x) {
+double dalcs_steady_relative_size(const struct dalcs_steady *st, const double *x) {
     double most = 0.0;
     for (int i = 0; i < st->layout.n_x; i++) {
         const double scale = fmax(st->base.scale[i], st->scale[i]);
@@ -49,7 +48,8 @@ static enum dalcs_status find_holds(struct dalcs_steady *st, double k, bool *hol
         e[x] = st->then.x[x] - st->at.x[x] - st->step[x] / k;
     }
     const enum dalcs_status status = dalcs_steady_find_leap(st, st->base.M, k, e);
-    *holds = status == DALCS_OK && size_of(st, e) <= 0.5 * size_of(st, st->step);
+    *holds = status == DALCS_OK &&
+             dalcs_steady_relative_size(st, e) <= 0.5 * dalcs_steady_relative_size(st, st->step);
     return status < DALCS_OK ? status : DALCS_OK;
 }
 

@@ -77,6 +77,11 @@ enum dalcs_status dalcs_steady_look_ahead(struct dalcs_steady *st, bool *found,
 
 /* ---- steady_from_rest.c ------------------------------------------------------------------------ */
 
+/* A few periods of a search from the operating point, and as many of one from IC= and 0, unless any run starts there. If not
+ * *found and not *endless st is as before. */
+enum dalcs_status dalcs_steady_search_early(struct dalcs_steady *st, bool *found,
+                                            bool *endless) DALCS_MUST_CHECK;
+
 /* The search from the operating point has found nothing, and a run from there comes to that: a search from IC= and 0, unless
  * that was its start, or the run is chaotic. If not *found st is where it was. */
 enum dalcs_status dalcs_steady_search_from_rest(struct dalcs_steady *st,
