@@ -25,9 +25,9 @@ static bool make_row(struct file_audit *a, struct file_row *row) {
 
 static bool make_for_nodes(struct file_audit *a) {
     const size_t n = (size_t)a->circuit->n_nodes;
-    return make(a, &a->node_of, n, sizeof *a->node_of) &&
-           make(a, &a->fed_from, n, sizeof *a->fed_from) &&
-           make(a, &a->first_branch, n + 1, sizeof *a->first_branch) &&
+    return make(a, &a->nodes.of, n, sizeof *a->nodes.of) &&
+           make(a, &a->nodes.fed_from, n, sizeof *a->nodes.fed_from) &&
+           make(a, &a->nodes.first_branch, n + 1, sizeof *a->nodes.first_branch) &&
            make(a, &a->columns.potential, n, sizeof *a->columns.potential) &&
            make(a, &a->columns.potential_of, n, sizeof *a->columns.potential_of) &&
            make(a, &a->columns.given_by, n, sizeof *a->columns.given_by) &&
@@ -48,7 +48,7 @@ static bool make_for_nodes(struct file_audit *a) {
 
 static bool make_for_devices(struct file_audit *a) {
     const size_t n = (size_t)a->circuit->n_devices;
-    return make(a, &a->branch, 2 * n, sizeof *a->branch) &&
+    return make(a, &a->nodes.branch, 2 * n, sizeof *a->nodes.branch) &&
            make(a, &a->columns.current, n, sizeof *a->columns.current) &&
            make(a, &a->scale.u, n, sizeof *a->scale.u) &&
            make(a, &a->scale.i, n, sizeof *a->scale.i) &&
@@ -87,21 +87,21 @@ static enum dalcs_status make_room(struct file_audit *a) {
 /* Nodes that shorts join have one potential. KCL holds at both ends of one whose current the file has. */
 static void merge_shorts(struct file_audit *a, bool with_measured) {
     const struct dalcs_circuit *c = a->circuit;
-    dalcs_union_reset(a->node_of, c->n_nodes);
-    dalcs_union_reset(a->fed_from, c->n_nodes);
+    dalcs_union_reset(a->nodes.of, c->n_nodes);
+    dalcs_union_reset(a->nodes.fed_from, c->n_nodes);
     for (int d = 0; d < c->n_devices; d++) {
         const struct dalcs_device *device = &c->device[d];
         const bool is_short = dalcs_device_is_short(device);
         if (is_short && (with_measured || a->columns.current[d] < 0)) {
-            dalcs_union_join(a->node_of, device->node[0], device->node[1]);
+            dalcs_union_join(a->nodes.of, device->node[0], device->node[1]);
         }
         if (is_short || device->kind == DALCS_VSOURCE) {
-            dalcs_union_join(a->fed_from, device->node[0], device->node[1]);
+            dalcs_union_join(a->nodes.fed_from, device->node[0], device->node[1]);
         }
     }
     for (int n = 0; n < c->n_nodes; n++) {
-        a->node_of[n] = dalcs_union_find(a->node_of, n);
-        a->fed_from[n] = dalcs_union_find(a->fed_from, n);
+        a->nodes.of[n] = dalcs_union_find(a->nodes.of, n);
+        a->nodes.fed_from[n] = dalcs_union_find(a->nodes.fed_from, n);
     }
 }
 
@@ -110,17 +110,18 @@ static void list_branches(struct file_audit *a) {
     const struct dalcs_circuit *c = a->circuit;
     for (int fill = 0; fill < 2; fill++) {
         for (int d = 0; d < c->n_devices; d++) {
-            const int end[2] = {a->node_of[c->device[d].node[0]], a->node_of[c->device[d].node[1]]};
+            const int end[2] = {a->nodes.of[c->device[d].node[0]],
+                                a->nodes.of[c->device[d].node[1]]};
             for (int e = 0; e < 2 && end[0] != end[1]; e++) {
                 if (fill) {
-                    a->branch[a->first_branch[end[e]] + a->sets.count[end[e]]++] = d;
+                    a->nodes.branch[a->nodes.first_branch[end[e]] + a->sets.count[end[e]]++] = d;
                 } else {
-                    a->first_branch[end[e] + 1]++;
+                    a->nodes.first_branch[end[e] + 1]++;
                 }
             }
         }
         for (int n = 0; n < c->n_nodes && !fill; n++) {
-            a->first_branch[n + 1] += a->first_branch[n];
+            a->nodes.first_branch[n + 1] += a->nodes.first_branch[n];
         }
     }
 }

@@ -92,10 +92,12 @@ struct file_audit {
     bool
         is_before; /* ... the one that a .tran begins at, where sources may have other values than DC */
     double ramp; /* s; a jump of a source may take so long in the file */
-    int *node_of;
-    int *
-        fed_from; /* [n_nodes] likewise, V sources taken for shorts: what differs by sources alone */
-    int *first_branch, *branch; /* devices at each node, no shorts and loops */
+
+    struct {
+        int *of;       /* [n_nodes] shorts taken together */
+        int *fed_from; /* [n_nodes] likewise, V sources too: what differs by sources alone */
+        int *first_branch, *branch; /* devices at each node, no shorts and loops */
+    } nodes;
 
     struct file_columns {
         int n_potentials;

@@ -66,7 +66,7 @@ static void join_nodes(struct file_audit *a, const struct file_row *left,
     for (int d = 0; d < a->circuit->n_devices; d++) {
         const int *node = a->circuit->device[d].node;
         if (join(a, left, right, d)) {
-            dalcs_union_join(a->sets.cluster, a->node_of[node[0]], a->node_of[node[1]]);
+            dalcs_union_join(a->sets.cluster, a->nodes.of[node[0]], a->nodes.of[node[1]]);
         }
     }
 }
@@ -110,8 +110,8 @@ void file_check_jump(struct file_audit *a, const struct file_row *left,
         const double allowed = change.error + 2.0 * law.end_tolerance +
                                2.0 * right->t_error * (is_coil ? a->scale.volts : a->scale.amperes);
         const bool is_held =
-            is_coil && dalcs_union_find(a->sets.cluster, a->node_of[device->node[0]]) ==
-                           dalcs_union_find(a->sets.cluster, a->node_of[device->node[1]]);
+            is_coil && dalcs_union_find(a->sets.cluster, a->nodes.of[device->node[0]]) ==
+                           dalcs_union_find(a->sets.cluster, a->nodes.of[device->node[1]]);
         if (is_held && change.known) {
             file_find(a, DALCS_AUDIT_BRANCH, d, "Wb", fabs(change.value), allowed, right->t,
                       right->t);

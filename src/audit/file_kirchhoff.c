@@ -7,14 +7,14 @@
 #include "union_find.h"
 
 static int root(const struct file_audit *a, int device, int end) {
-    return a->node_of[a->circuit->device[device].node[end]];
+    return a->nodes.of[a->circuit->device[device].node[end]];
 }
 
 static void count_unknown(struct file_audit *a, const struct file_row *row) {
     for (int n = 0; n < a->circuit->n_nodes; n++) {
         a->sets.count[n] = 0;
-        for (int k = a->first_branch[n]; k < a->first_branch[n + 1]; k++) {
-            a->sets.count[n] += row->i[a->branch[k]].known ? 0 : 1;
+        for (int k = a->nodes.first_branch[n]; k < a->nodes.first_branch[n + 1]; k++) {
+            a->sets.count[n] += row->i[a->nodes.branch[k]].known ? 0 : 1;
         }
     }
 }
@@ -24,8 +24,8 @@ static int take_rest(const struct file_audit *a, const struct file_row *row, int
                      struct file_number *rest) {
     int found = -1;
     *rest = file_exactly(0.0);
-    for (int k = a->first_branch[node]; k < a->first_branch[node + 1]; k++) {
-        const int d = a->branch[k];
+    for (int k = a->nodes.first_branch[node]; k < a->nodes.first_branch[node + 1]; k++) {
+        const int d = a->nodes.branch[k];
         if (row->i[d].known) {
             *rest = file_add(*rest, root(a, d, 0) == node ? -1.0 : 1.0, row->i[d]);
         } else {
@@ -98,7 +98,7 @@ void file_describe_sets(struct file_audit *a, const struct file_row *row) {
         a->sets.has_unspent[n] = false;
     }
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        if (a->node_of[n] == n) {
+        if (a->nodes.of[n] == n) {
             const int set = dalcs_union_find(a->sets.cluster, n);
             a->sets.count[set]++;
             a->sets.has_unspent[set] = a->sets.has_unspent[set] || row == NULL || !row->is_spent[n];
@@ -109,7 +109,7 @@ void file_describe_sets(struct file_audit *a, const struct file_row *row) {
 
 void file_note_covered(struct file_audit *a) {
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        const int set = dalcs_union_find(a->sets.cluster, a->node_of[n]);
+        const int set = dalcs_union_find(a->sets.cluster, a->nodes.of[n]);
         a->coverage.is_covered[n] = a->coverage.is_covered[n] || a->coverage.is_checked[set];
     }
 }
@@ -128,7 +128,7 @@ void file_check_nodes(struct file_audit *a, const struct file_row *row) {
     file_sum_sets(a, row->i);
     file_describe_sets(a, row);
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->coverage.is_covered[n] = a->coverage.is_covered[n] || row->is_spent[a->node_of[n]];
+        a->coverage.is_covered[n] = a->coverage.is_covered[n] || row->is_spent[a->nodes.of[n]];
         a->coverage.is_checked[n] =
             n > 0 && a->sets.count[n] > 0 && a->sets.sum[n].known && a->sets.has_unspent[n];
         if (a->coverage.is_checked[n]) {

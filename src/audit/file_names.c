@@ -185,14 +185,14 @@ static void find_potentials(struct finder *f, struct dalcs_diag *diag) {
 /* Nodes that shorts join have one potential. */
 static void share_potentials(struct file_audit *a) {
     for (int n = 1; n < a->circuit->n_nodes; n++) {
-        const int root = a->node_of[n];
+        const int root = a->nodes.of[n];
         if (is_found(a, n) && !is_found(a, root)) {
             set_potential(a, root, n, 0.0, 0);
         }
     }
     for (int n = 1; n < a->circuit->n_nodes; n++) {
-        if (!is_found(a, n) && is_found(a, a->node_of[n])) {
-            set_potential(a, n, a->node_of[n], 0.0, 0);
+        if (!is_found(a, n) && is_found(a, a->nodes.of[n])) {
+            set_potential(a, n, a->nodes.of[n], 0.0, 0);
         }
     }
 }

@@ -159,12 +159,12 @@ static const char *gap_of_device(const struct file_audit *a, int d, struct missi
 }
 
 static const char *gap_of_node(const struct file_audit *a, int n, struct missing *m) {
-    if (a->coverage.is_covered[n] || a->node_of[n] != n ||
-        a->first_branch[n + 1] == a->first_branch[n]) {
+    if (a->coverage.is_covered[n] || a->nodes.of[n] != n ||
+        a->nodes.first_branch[n + 1] == a->nodes.first_branch[n]) {
         return NULL;
     }
-    for (int k = a->first_branch[n]; k < a->first_branch[n + 1]; k++) {
-        const int d = a->branch[k];
+    for (int k = a->nodes.first_branch[n]; k < a->nodes.first_branch[n + 1]; k++) {
+        const int d = a->nodes.branch[k];
         const enum dalcs_device_kind kind = a->circuit->device[d].kind;
         if (!a->coverage.ever_known[d] && kind != DALCS_CAPACITOR) {
             miss(m, 'i', a->circuit->device[d].name);

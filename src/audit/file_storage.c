@@ -118,8 +118,8 @@ static void gather(struct file_audit *a, const struct file_row *row, struct file
     }
     for (int d = 0; d < a->circuit->n_devices; d++) {
         const struct dalcs_device *device = &a->circuit->device[d];
-        const int end[2] = {dalcs_union_find(a->sets.cluster, a->node_of[device->node[0]]),
-                            dalcs_union_find(a->sets.cluster, a->node_of[device->node[1]])};
+        const int end[2] = {dalcs_union_find(a->sets.cluster, a->nodes.of[device->node[0]]),
+                            dalcs_union_find(a->sets.cluster, a->nodes.of[device->node[1]])};
         for (int e = 0; e < 2 && end[0] != end[1]; e++) {
             struct file_set_law *l = &law[end[e]];
             if (a->charges.is_taken[d]) {

@@ -59,7 +59,8 @@ static double bend_at(const struct file_audit *a, const struct file_row *row, in
  * operating point sources alone command it. */
 static bool knows_start(const struct file_audit *a, const struct file_row *row,
                         const struct dalcs_device *d) {
-    const bool is_commanded = d->control < 0 && a->fed_from[d->node[2]] == a->fed_from[d->node[3]];
+    const bool is_commanded =
+        d->control < 0 && a->nodes.fed_from[d->node[2]] == a->nodes.fed_from[d->node[3]];
     const bool is_start =
         a->is_at_rest ? is_commanded : a->circuit->analyses.transient.use_initial_conditions;
     return row->t == 0.0 && (is_start || row->is_left) && !a->promise.remembers;

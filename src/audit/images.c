@@ -29,21 +29,21 @@ static struct audit_image *find(struct audit_screen *screen,
                                 const struct dalcs_audit_polynomials *p) {
     const bool is_any = has_any_end(screen, p);
     for (int k = 0; k < AUDIT_IMAGES; k++) {
-        struct audit_image *image = &screen->image[k];
+        struct audit_image *image = &screen->images.of[k];
         if (image->step == p->step && (is_any || audit_is_same_end(image->end, p->end))) {
-            screen->image_at = k;
+            screen->images.at = k;
             return image;
         }
     }
     const bool comes_back =
-        screen->step == p->step && (is_any || audit_is_same_end(screen->end, p->end));
-    screen->step = p->step;
-    screen->end = p->end;
+        screen->images.step == p->step && (is_any || audit_is_same_end(screen->images.end, p->end));
+    screen->images.step = p->step;
+    screen->images.end = p->end;
     if (!comes_back) {
         return NULL;
     }
-    screen->image_at = (screen->image_at + 1) % AUDIT_IMAGES;
-    struct audit_image *image = &screen->image[screen->image_at];
+    screen->images.at = (screen->images.at + 1) % AUDIT_IMAGES;
+    struct audit_image *image = &screen->images.of[screen->images.at];
     forget(image);
     image->step = p->step;
     image->end = p->end;
@@ -168,6 +168,6 @@ struct audit_image *audit_image_of(const struct dalcs_audit *audit, const struct
 
 void audit_images_forget(struct audit_screen *screen) {
     for (int k = 0; k < AUDIT_IMAGES; k++) {
-        forget(&screen->image[k]);
+        forget(&screen->images.of[k]);
     }
 }

@@ -35,15 +35,16 @@ enum dalcs_status dalcs_response_audit_start(struct dalcs_response_audit *a,
         most = b != NULL && (size_t)b->n_pairs > most ? (size_t)b->n_pairs : most;
     }
     a->node_of = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->node_of);
-    a->cluster = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->cluster);
-    a->gain = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->gain);
-    a->node = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->node);
+    a->work.cluster = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->work.cluster);
+    a->work.gain = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->work.gain);
+    a->work.node = dalcs_arena_alloc(&a->arena, n_nodes, sizeof *a->work.node);
     a->lines = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->lines);
-    a->lambda = dalcs_arena_alloc(&a->arena, most, sizeof *a->lambda);
-    a->lambda_size = dalcs_arena_alloc(&a->arena, most, sizeof *a->lambda_size);
+    a->work.lambda = dalcs_arena_alloc(&a->arena, most, sizeof *a->work.lambda);
+    a->work.lambda_size = dalcs_arena_alloc(&a->arena, most, sizeof *a->work.lambda_size);
     enum dalcs_status status = DALCS_E_NOMEM;
-    if (a->node_of != NULL && a->cluster != NULL && a->gain != NULL && a->node != NULL &&
-        a->lines != NULL && a->lambda != NULL && a->lambda_size != NULL) {
+    if (a->node_of != NULL && a->work.cluster != NULL && a->work.gain != NULL &&
+        a->work.node != NULL && a->lines != NULL && a->work.lambda != NULL &&
+        a->work.lambda_size != NULL) {
         merge_shorts(a);
         response_find_largest(a, at);
         status = response_find_lines(a, at);
@@ -285,7 +286,7 @@ static void check_branch(struct dalcs_response_audit *a, struct dalcs_response_v
 
 static void add_to_node(struct dalcs_response_audit *a, const struct dalcs_response_values *is,
                         int device, int end) {
-    struct response_node *n = &a->node[a->node_of[a->circuit->device[device].node[end]]];
+    struct response_node *n = &a->work.node[a->node_of[a->circuit->device[device].node[end]]];
     const double complex i = is->i[device];
     n->is_open = n->is_open || !a->of.are_there[device] || is->size[device] < 0.0;
     n->sum += end == 0 ? i : -i;
@@ -296,7 +297,7 @@ static void add_to_node(struct dalcs_response_audit *a, const struct dalcs_respo
 static void check_nodes(struct dalcs_response_audit *a, const struct dalcs_response_values *is) {
     const struct dalcs_circuit *c = a->circuit;
     for (int n = 0; n < c->n_nodes; n++) {
-        a->node[n] = (struct response_node){0};
+        a->work.node[n] = (struct response_node){0};
     }
     for (int d = 0; d < c->n_devices; d++) {
         if (a->node_of[c->device[d].node[0]] != a->node_of[c->device[d].node[1]]) {
@@ -305,7 +306,7 @@ static void check_nodes(struct dalcs_response_audit *a, const struct dalcs_respo
         }
     }
     for (int n = 1; n < c->n_nodes; n++) {
-        const struct response_node *s = &a->node[n];
+        const struct response_node *s = &a->work.node[n];
         if (a->node_of[n] == n && a->node_of[0] != n && !s->is_open) {
             response_found(a, DALCS_RESPONSE_NODE, n, response_magnitude(s->sum),
                            a->tolerance * s->scale + a->rounding * (s->size + a->amperes));

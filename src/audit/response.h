@@ -73,13 +73,16 @@ struct dalcs_response_audit {
     double omega;                     /* of what is looked at */
     double volts, amperes;        /* the largest there, and what rounding makes of a 0 A at least */
     int *node_of;                 /* [n_nodes] shorts taken together */
-    int *cluster;                 /* [n_nodes] work */
-    struct response_gain *gain;   /* [n_devices] work */
     struct response_lines *lines; /* [n_devices] */
-    struct response_node *node;   /* [n_nodes] work */
-    double complex *lambda;       /* [most pairs of a formula] work */
-    double *lambda_size;          /* likewise */
-    bool is_known;                /* work: of what was evaluated last */
+
+    struct {
+        int *cluster;               /* [n_nodes] */
+        struct response_gain *gain; /* [n_devices] */
+        struct response_node *node; /* [n_nodes] */
+        double complex *lambda;     /* [most pairs of a formula] */
+        double *lambda_size;        /* likewise */
+        bool is_known;              /* of what was evaluated last */
+    } work;
     struct dalcs_response_finding worst;
     long n_checked, n_not_checked; /* laws */
     struct dalcs_arena arena;

@@ -55,7 +55,7 @@ static bool may_pass(const struct dalcs_response_audit *a, const struct dalcs_re
 
 static void add_charge(struct dalcs_response_audit *a, int node, double complex charge,
                        double allowed, double farad) {
-    struct response_node *n = &a->node[dalcs_union_find(a->cluster, node)];
+    struct response_node *n = &a->work.node[dalcs_union_find(a->work.cluster, node)];
     n->sum += charge;
     n->scale += allowed;
     n->size += farad;
@@ -72,9 +72,9 @@ static void gather(struct dalcs_response_audit *a, int device, const struct resp
 }
 
 void response_part_nodes(struct dalcs_response_audit *a) {
-    dalcs_union_reset(a->cluster, a->circuit->n_nodes);
+    dalcs_union_reset(a->work.cluster, a->circuit->n_nodes);
     for (int n = 0; n < a->circuit->n_nodes; n++) {
-        a->node[n] = (struct response_node){0};
+        a->work.node[n] = (struct response_node){0};
     }
 }
 
@@ -84,7 +84,7 @@ void response_check_charges(struct dalcs_response_audit *a, const struct dalcs_r
     response_part_nodes(a);
     for (int d = 0; d < c->n_devices; d++) {
         if (!a->of.are_there[d] || may_pass(a, e, d)) {
-            dalcs_union_join(a->cluster, c->device[d].node[0], c->device[d].node[1]);
+            dalcs_union_join(a->work.cluster, c->device[d].node[0], c->device[d].node[1]);
         }
     }
     for (int d = 0; d < c->n_devices; d++) {
@@ -95,9 +95,9 @@ void response_check_charges(struct dalcs_response_audit *a, const struct dalcs_r
     for (int d = 0; d < c->n_devices; d++) { /* told by each capacitor of a set */
         const struct dalcs_device *device = &c->device[d];
         for (int end = 0; end < 2 && is_capacitor(a, d); end++) {
-            const int root = dalcs_union_find(a->cluster, device->node[end]);
-            const struct response_node *n = &a->node[root];
-            if (root != dalcs_union_find(a->cluster, 0)) {
+            const int root = dalcs_union_find(a->work.cluster, device->node[end]);
+            const struct response_node *n = &a->work.node[root];
+            if (root != dalcs_union_find(a->work.cluster, 0)) {
                 response_found(a, DALCS_RESPONSE_STATE, d, response_magnitude(n->sum) / n->size,
                                n->scale / n->size);
             }

@@ -96,19 +96,20 @@ static void check_states(struct dalcs_response_audit *a, const struct dalcs_resp
         if (!is_storage(a, d)) {
             continue;
         }
-        a->gain[d] = gain_of(a, e, d);
+        a->work.gain[d] = gain_of(a, e, d);
         const bool is_coil = response_is_coil(a, d);
         if (is_coil ? !parts : !joins) {
             const double per = is_coil ? a->circuit->device[d].value : 1.0;
-            response_found(a, DALCS_RESPONSE_STATE, d, response_magnitude(a->gain[d].off) / per,
-                           a->gain[d].allowed / per);
+            response_found(a, DALCS_RESPONSE_STATE, d,
+                           response_magnitude(a->work.gain[d].off) / per,
+                           a->work.gain[d].allowed / per);
         }
     }
     if (joins) {
-        response_check_charges(a, e, a->gain);
+        response_check_charges(a, e, a->work.gain);
     }
     if (parts) {
-        response_check_fluxes(a, e, a->gain);
+        response_check_fluxes(a, e, a->work.gain);
     }
 }
 

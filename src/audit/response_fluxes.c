@@ -44,19 +44,19 @@ static bool may_stand(const struct dalcs_response_audit *a, const struct dalcs_r
  * n and its parent. */
 static int find_root(struct dalcs_response_audit *a, int n, struct response_node *between) {
     *between = (struct response_node){0};
-    while (a->cluster[n] != n) {
-        struct response_node *step = &a->node[n];
-        const int up = a->cluster[n];
-        if (a->cluster[up] != up) {
-            step->sum += a->node[up].sum;
-            step->scale += a->node[up].scale;
-            step->size += a->node[up].size;
-            a->cluster[n] = a->cluster[up];
+    while (a->work.cluster[n] != n) {
+        struct response_node *step = &a->work.node[n];
+        const int up = a->work.cluster[n];
+        if (a->work.cluster[up] != up) {
+            step->sum += a->work.node[up].sum;
+            step->scale += a->work.node[up].scale;
+            step->size += a->work.node[up].size;
+            a->work.cluster[n] = a->work.cluster[up];
         }
         between->sum += step->sum;
         between->scale += step->scale;
         between->size += step->size;
-        n = a->cluster[n];
+        n = a->work.cluster[n];
     }
     return n;
 }
@@ -70,8 +70,8 @@ static void add_coil(struct dalcs_response_audit *a, int device, const struct re
                                         .scale = gain->allowed + end[0].scale + end[1].scale,
                                         .size = d->value + end[0].size + end[1].size};
     if (root[0] != root[1]) {
-        a->cluster[root[0]] = root[1];
-        a->node[root[0]] = whole;
+        a->work.cluster[root[0]] = root[1];
+        a->work.node[root[0]] = whole;
     } else {
         response_found(a, DALCS_RESPONSE_STATE, device, response_magnitude(whole.sum) / whole.size,
                        whole.scale / whole.size);
@@ -84,7 +84,7 @@ void response_check_fluxes(struct dalcs_response_audit *a, const struct dalcs_re
     response_part_nodes(a);
     for (int d = 0; d < c->n_devices; d++) {
         if (a->of.are_there[d] && !response_is_coil(a, d) && !may_stand(a, e, d)) {
-            dalcs_union_join(a->cluster, c->device[d].node[0], c->device[d].node[1]);
+            dalcs_union_join(a->work.cluster, c->device[d].node[0], c->device[d].node[1]);
         }
     }
     for (int d = 0; d < c->n_devices; d++) {

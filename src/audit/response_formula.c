@@ -33,10 +33,10 @@ static struct response_sum evaluate(struct dalcs_response_audit *a,
         } else if (t->kind == DALCS_QUANTITY_CURRENT) {
             x = is->i[t->index];
             size = is->size[t->index];
-            a->is_known = a->is_known && size >= 0.0;
+            a->work.is_known = a->work.is_known && size >= 0.0;
         } else if (t->kind == DALCS_QUANTITY_PAIR && t->index < first_left_out) {
-            x = a->lambda[t->index];
-            size = a->lambda_size[t->index];
+            x = a->work.lambda[t->index];
+            size = a->work.lambda_size[t->index];
         } else if (t->kind == DALCS_QUANTITY_STIMULUS) {
             x = stimulus_of(a, t->index, is_point);
         }
@@ -60,23 +60,23 @@ static bool is_near(double x, double corner, double margin) {
 /* The slopes of a pair, or of two, and their values there. */
 static void find_cell(struct dalcs_response_audit *a, const struct dalcs_response_values *at,
                       const struct dalcs_behaviour *b, double *slope, int k) {
-    a->is_known = true;
+    a->work.is_known = true;
     const struct response_sum sum = evaluate(a, at, &b->w[k], k, true);
     const double argument = -creal(sum.value) - b->w[k].constant;
     const double margin = a->tolerance * (sum.scale + fabs(b->w[k].constant));
     const double resistance = dalcs_affine_of_pair(&b->w[k], k);
     const double height = is_cell(b, k) ? b->w[k + 1].constant : INFINITY;
     const double top = resistance > 0.0 ? height * resistance : 0.0;
-    const bool is_corner = !a->is_known || is_near(argument, 0.0, margin) ||
+    const bool is_corner = !a->work.is_known || is_near(argument, 0.0, margin) ||
                            (is_cell(b, k) && is_near(argument, top, margin));
     const bool is_between = resistance > 0.0 && argument > 0.0 && argument < top;
     slope[k] = is_corner ? NAN : is_between ? 1.0 / resistance : 0.0;
-    a->lambda[k] = argument <= 0.0 ? 0.0 : is_between ? argument / resistance : height;
-    a->lambda_size[k] = response_magnitude(a->lambda[k]);
+    a->work.lambda[k] = argument <= 0.0 ? 0.0 : is_between ? argument / resistance : height;
+    a->work.lambda_size[k] = response_magnitude(a->work.lambda[k]);
     if (is_cell(b, k)) {
         slope[k + 1] = is_corner ? NAN : argument > top ? 1.0 : 0.0;
-        a->lambda[k + 1] = fmax(argument - top, 0.0);
-        a->lambda_size[k + 1] = response_magnitude(a->lambda[k + 1]);
+        a->work.lambda[k + 1] = fmax(argument - top, 0.0);
+        a->work.lambda_size[k + 1] = response_magnitude(a->work.lambda[k + 1]);
     }
 }
 
@@ -157,7 +157,7 @@ bool response_formula(struct dalcs_response_audit *a, const struct dalcs_respons
     if (b->smooth != NULL) {
         return smooth_output(a, is, b->smooth, a->lines[device].gradient, output, doubt);
     }
-    a->is_known = true;
+    a->work.is_known = true;
     for (int k = 0; k < b->n_pairs;) {
         const struct response_sum argument = evaluate(a, is, &b->w[k], k, false);
         const int n = is_cell(b, k) ? 2 : 1;
@@ -167,11 +167,11 @@ bool response_formula(struct dalcs_response_audit *a, const struct dalcs_respons
             if (isnan(slope[m]) && (argument.value != 0.0 || may_slide)) {
                 return false;
             }
-            a->lambda[m] = isnan(slope[m]) ? 0.0 : -slope[m] * argument.value;
-            a->lambda_size[m] = isnan(slope[m]) ? 0.0 : slope[m] * argument.size;
+            a->work.lambda[m] = isnan(slope[m]) ? 0.0 : -slope[m] * argument.value;
+            a->work.lambda_size[m] = isnan(slope[m]) ? 0.0 : slope[m] * argument.size;
         }
         k += n;
     }
     *output = evaluate(a, is, &b->output, b->n_pairs, false);
-    return a->is_known;
+    return a->work.is_known;
 }

@@ -119,9 +119,12 @@ struct audit_screen {
     struct audit_term *term[AUDIT_N_TERM_KINDS]; /* one behind the other */
     struct audit_waves waves;                    /* of sines that go on, in the sum of laws */
     struct audit_course course;                  /* of what other sources add to it */
-    double step, end;                            /* of the stretch before that had no image */
-    int image_at;                                /* the one that was of use last */
-    struct audit_image image[AUDIT_IMAGES];
+
+    struct {
+        double step, end; /* of the stretch before that had no image */
+        int at;           /* the one that was of use last */
+        struct audit_image of[AUDIT_IMAGES];
+    } images;
 };
 
 /* The screen of these polynomials; NULL: there is none yet. */
@@ -295,7 +298,7 @@ struct audit_image *audit_image_of(const struct dalcs_audit *audit, const struct
 /* Likewise where it is that of the stretch asked last, with that end. */
 static inline struct audit_image *
 audit_image_again(struct audit_screen *screen, const struct dalcs_audit_polynomials *p, int m) {
-    struct audit_image *image = &screen->image[screen->image_at];
+    struct audit_image *image = &screen->images.of[screen->images.at];
     return image->step == p->step && image->at[m].place != NULL && p->input != NULL &&
                    audit_is_same_end(image->end, p->end) &&
                    audit_is_same_end(image->at[m].end, p->end)

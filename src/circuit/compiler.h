@@ -89,9 +89,13 @@ struct dalcs_compiler {
 
     const struct dalcs_potentials *potentials; /* NULL: what sources decide has pairs, too */
 
-    bool is_silent;     /* a formula is only asked what it is */
-    bool is_of_storage; /* of flux or charge */
-    double start;       /* then its argument at the start */
+    bool is_silent; /* a formula is only asked what it is */
+
+    struct {
+        bool is_it;   /* flux or charge */
+        double start; /* its argument at the start */
+    } storage;
+
     bool failed;
 };
 

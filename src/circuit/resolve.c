@@ -80,8 +80,8 @@ static void resolve(struct dalcs_compiler *c, struct dalcs_formula_source *sourc
                     struct dalcs_potentials *potentials) {
     c->failed = false;
     c->n_nodes = 0;
-    c->is_of_storage = c->builder->circuit->device[source->device].is_storage;
-    c->start = c->builder->circuit->device[source->device].initial;
+    c->storage.is_it = c->builder->circuit->device[source->device].is_storage;
+    c->storage.start = c->builder->circuit->device[source->device].initial;
     c->element = c->builder->elements.device_token[source->device];
     const struct dalcs_form *form = form_of(c, source);
     /* products may have moved it */

@@ -150,7 +150,7 @@ static const struct dalcs_behaviour *make(struct dalcs_compiler *c, const int *n
 
 bool dalcs_root_is_one_sided(const struct dalcs_compiler *c, enum dalcs_smooth_kind kind,
                              const struct dalcs_form **argument) {
-    const int sign = c->is_of_storage ? 0 : sign_of(argument[0]);
+    const int sign = c->storage.is_it ? 0 : sign_of(argument[0]);
     return sign != 0 && exponent_of(kind, argument, sign) > 0.0;
 }
 

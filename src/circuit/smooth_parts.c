@@ -107,8 +107,9 @@ static void point_at(const struct dalcs_formula *f, struct dalcs_device *device)
 static void find_arguments(struct dalcs_compiler *c, const struct dalcs_formula *f,
                            struct dalcs_smooth *smooth, const struct dalcs_form **argument) {
     for (int k = 0; k < smooth->n && !c->failed; k++) {
-        smooth->start[k] =
-            c->is_of_storage ? dalcs_storage_formula_at(c->builder, f->argument[k], c->start) : 0.0;
+        smooth->start[k] = c->storage.is_it ? dalcs_storage_formula_at(c->builder, f->argument[k],
+                                                                       c->storage.start)
+                                            : 0.0;
         smooth->node[k] = smooth->source[k] = -1;
         if (dalcs_form_is_number(argument[k])) {
             smooth->number[k] = argument[k]->affine.constant;
@@ -151,7 +152,7 @@ const struct dalcs_form *dalcs_smooth_form(struct dalcs_compiler *c, const struc
         return NULL;
     }
     if (c->smooth_node[f->number_of] == 0) {
-        struct dalcs_smooth smooth = {.kind = kind, .n = n, .is_of_storage = c->is_of_storage};
+        struct dalcs_smooth smooth = {.kind = kind, .n = n, .is_of_storage = c->storage.is_it};
         const int node = add_smooth(c, f, &smooth, argument);
         c->failed = c->failed || node < 0;
         c->smooth_node[f->number_of] = node > 0 ? node : 0;

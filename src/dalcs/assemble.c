@@ -169,7 +169,7 @@ static enum dalcs_status name_readers(struct stamps *b) {
     return DALCS_OK;
 }
 
-/* Is this pair's device in the same component as these? A network of impulses may leave it out. */
+/* Is this pair's device in the same component as these? */
 static bool is_in(const struct dalcs_layout *l, int device, const struct dalcs_members *m) {
     const int *component = l->topology.device_component;
     return component[device] == component[m->device[0]] && l->pair[device] >= 0;

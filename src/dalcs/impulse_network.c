@@ -171,6 +171,7 @@ static void let_go_of_controls(struct dalcs_circuit *to) {
         if (to->device[i].kind == DALCS_SWITCH) {
             to->device[i].node[2] = to->device[i].node[3] = 0;
             to->device[i].control = -1;
+            to->device[i].valve = -1;
         }
     }
     for (int k = 0; k < to->models.n_switches; k++) {

@@ -27,14 +27,14 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
     newton->tangent = dalcs_arena_alloc(arena, n, sizeof(*newton->tangent));
     newton->other = dalcs_arena_alloc(arena, 3 * (size_t)system->n_smooth, sizeof(*newton->other));
     newton->slope = dalcs_arena_alloc(arena, 2 * n * n, sizeof(double));
-    newton->matrix = dalcs_arena_alloc(arena, n * n, sizeof(double));
-    newton->step = dalcs_arena_alloc(arena, n, sizeof(double));
-    newton->correction = dalcs_arena_alloc(arena, n, sizeof(double));
-    newton->pivot = dalcs_arena_alloc(arena, n, sizeof(int));
+    newton->work.matrix = dalcs_arena_alloc(arena, n * n, sizeof(double));
+    newton->work.step = dalcs_arena_alloc(arena, n, sizeof(double));
+    newton->work.correction = dalcs_arena_alloc(arena, n, sizeof(double));
+    newton->work.pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     bool complete = newton->phi != NULL && newton->before != NULL && newton->x != NULL &&
                     newton->terms != NULL && newton->tangent != NULL && newton->other != NULL &&
-                    newton->slope != NULL && newton->matrix != NULL && newton->step != NULL &&
-                    newton->correction != NULL && newton->pivot != NULL;
+                    newton->slope != NULL && newton->work.matrix != NULL && newton->work.step != NULL &&
+                    newton->work.correction != NULL && newton->work.pivot != NULL;
     DALCS_TRY(complete ? DALCS_OK : DALCS_E_NOMEM);
     return dalcs_smooth_inner_setup(&newton->inner, system, (int)n, arena);
 }
@@ -46,8 +46,8 @@ void dalcs_smooth_newton_begin(struct dalcs_smooth_newton *newton, const double 
     }
     newton->volt = 0.0;
     newton->halved = newton->n_steps = 0;
-    newton->limits = newton->at_pole = newton->is_damped = false;
-    newton->defect = INFINITY;
+    newton->limits = newton->outcome.at_pole = newton->is_damped = false;
+    newton->outcome.defect = INFINITY;
 }
 
 void dalcs_smooth_newton_forget(struct dalcs_smooth_newton *newton) {
@@ -109,20 +109,20 @@ static bool is_excused(const struct dalcs_smooth_newton *newton, int q, double t
 
 bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double tolerance,
                                 bool *is_done) {
-    newton->defect_before = newton->defect;
-    newton->defect = 0.0;
+    newton->outcome.defect_before = newton->outcome.defect;
+    newton->outcome.defect = 0.0;
     for (int q = 0; q < newton->n; q++) {
         double least;
         const double off = off_of(newton, q, tolerance, &least);
         const double defect = over(off, least);
-        newton->worst = defect > newton->defect ? q % newton->system->n_smooth : newton->worst;
-        newton->defect = defect <= newton->defect ? newton->defect : defect; /* NAN stays */
+        newton->outcome.worst = defect > newton->outcome.defect ? q % newton->system->n_smooth : newton->outcome.worst;
+        newton->outcome.defect = defect <= newton->outcome.defect ? newton->outcome.defect : defect; /* NAN stays */
     }
-    *is_done = newton->defect <= 1.0 || !(newton->defect < 0.5 * newton->defect_before);
+    *is_done = newton->outcome.defect <= 1.0 || !(newton->outcome.defect < 0.5 * newton->outcome.defect_before);
     bool agrees = *is_done && !newton->limits;
-    for (int q = 0; q < newton->n && agrees && !(newton->defect <= 1.0); q++) {
+    for (int q = 0; q < newton->n && agrees && !(newton->outcome.defect <= 1.0); q++) {
         agrees = is_excused(newton, q, tolerance);
-        newton->worst = agrees ? newton->worst : q % newton->system->n_smooth;
+        newton->outcome.worst = agrees ? newton->outcome.worst : q % newton->system->n_smooth;
     }
     return agrees;
 }
@@ -165,7 +165,7 @@ static bool is_finite(struct dalcs_smooth_newton *newton, bool *has_slopes) {
         is = isfinite(dalcs_smooth_value(of->kind, a)) && !isnan(gradient[0]) &&
              (of->column[1] < 0 || !isnan(gradient[1]));
         *has_slopes = *has_slopes && has;
-        newton->worst = is && has ? newton->worst : q % newton->system->n_smooth;
+        newton->outcome.worst = is && has ? newton->outcome.worst : q % newton->system->n_smooth;
     }
     return is;
 }
@@ -201,21 +201,21 @@ bool dalcs_smooth_newton_overshoots(struct dalcs_smooth_newton *newton, double t
         return false;
     }
     for (int q = 0; q < newton->n; q++) {
-        newton->correction[q] = dalcs_smooth_rest_of_share(dalcs_smooth_newton_input(newton, q),
+        newton->work.correction[q] = dalcs_smooth_rest_of_share(dalcs_smooth_newton_input(newton, q),
                                                            newton->share, newton->x[q]) -
                                 newton->inner.next[q];
     }
-    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->matrix, newton->n,
-                         newton->pivot, newton->correction, newton->n);
+    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->work.matrix, newton->n,
+                         newton->work.pivot, newton->work.correction, newton->n);
     double left = 0.0;
     double taken = 0.0;
     for (int q = 0; q < newton->n; q++) {
         const double size =
             is_excused(newton, q, tolerance)
                 ? INFINITY
-                : fabs(newton->before[q]) + fabs(newton->phi[q]) + fabs(newton->step[q]);
-        left = size > 0.0 ? dalcs_larger(left, fabs(newton->correction[q]) / size) : left;
-        taken = size > 0.0 ? dalcs_larger(taken, fabs(newton->step[q]) / size) : taken;
+                : fabs(newton->before[q]) + fabs(newton->phi[q]) + fabs(newton->work.step[q]);
+        left = size > 0.0 ? dalcs_larger(left, fabs(newton->work.correction[q]) / size) : left;
+        taken = size > 0.0 ? dalcs_larger(taken, fabs(newton->work.step[q]) / size) : taken;
     }
     const bool overshoots = left > taken && taken > dalcs_small;
     if (overshoots) {
@@ -226,8 +226,8 @@ bool dalcs_smooth_newton_overshoots(struct dalcs_smooth_newton *newton, double t
 
 void dalcs_smooth_newton_blame_pole(struct dalcs_smooth_newton *newton, int worst,
                                     const double *x) {
-    newton->worst = worst;
-    newton->at_pole = true;
+    newton->outcome.worst = worst;
+    newton->outcome.at_pole = true;
     memcpy(newton->x[worst], x, sizeof(newton->x[worst]));
 }
 
@@ -235,7 +235,7 @@ void dalcs_smooth_newton_blame_pole(struct dalcs_smooth_newton *newton, int wors
 static void put_row(struct dalcs_smooth_newton *newton, int q, const double *gradient) {
     const struct dalcs_smooth_input *of = dalcs_smooth_newton_input(newton, q);
     const int n = newton->n;
-    double *row = newton->matrix + (size_t)q * (size_t)n;
+    double *row = newton->work.matrix + (size_t)q * (size_t)n;
     memset(row, 0, (size_t)n * sizeof(*row));
     row[q] = 1.0;
     for (int j = 0; j < of->n; j++) {
@@ -259,17 +259,17 @@ static void put_tangent(struct dalcs_smooth_newton *newton, int q) {
     a[0] = dalcs_smooth_root_point(of, newton->share, a[0], newton->phi[q],
                                    newton->slope[(size_t)(2 * q) * (size_t)newton->n + (size_t)q]);
     dalcs_smooth_gradient_of_rest(of, newton->share, a, gradient);
-    newton->step[q] = dalcs_smooth_rest_of_share(of, newton->share, a) - newton->phi[q];
+    newton->work.step[q] = dalcs_smooth_rest_of_share(of, newton->share, a) - newton->phi[q];
     for (int j = 0; j < of->n; j++) {
-        newton->step[q] += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
+        newton->work.step[q] += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
     }
     put_row(newton, q, gradient);
 }
 
 /* The matrix has its rows one behind the other: its transpose by columns, for which LAPACKE needs no memory. */
 static bool factor(struct dalcs_smooth_newton *newton) {
-    return LAPACKE_dgetrf(LAPACK_COL_MAJOR, newton->n, newton->n, newton->matrix, newton->n,
-                          newton->pivot) == 0;
+    return LAPACKE_dgetrf(LAPACK_COL_MAJOR, newton->n, newton->n, newton->work.matrix, newton->n,
+                          newton->work.pivot) == 0;
 }
 
 /* What the others make of value q by its tangent, where it follows them by less than they move: to the rounding of its own
@@ -286,11 +286,11 @@ static double value_beside(const struct dalcs_smooth_newton *newton, int q) {
         const double *slope = newton->slope + (size_t)(2 * q + j) * (size_t)newton->n;
         value += of->column[j] >= 0 ? gradient[j] * (newton->x[q][j] - a[j]) : 0.0;
         for (int p = 0; p < newton->n && of->column[j] >= 0; p++) {
-            value += gradient[j] * slope[p] * newton->step[p];
+            value += gradient[j] * slope[p] * newton->work.step[p];
             follows += fabs(gradient[j] * slope[p]);
         }
     }
-    return follows < 1.0 ? value : newton->before[q] + newton->step[q];
+    return follows < 1.0 ? value : newton->before[q] + newton->work.step[q];
 }
 
 bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
@@ -302,8 +302,8 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
         put_tangent(newton, q);
     }
     bool is_solved =
-        factor(newton) && LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->matrix,
-                                         newton->n, newton->pivot, newton->step, newton->n) == 0;
+        factor(newton) && LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->work.matrix,
+                                         newton->n, newton->work.pivot, newton->work.step, newton->n) == 0;
     memcpy(newton->before, newton->phi, (size_t)newton->n * sizeof(double));
     for (int q = 0; q < newton->n && is_solved; q++) {
         newton->phi[q] = value_beside(newton, q);
@@ -334,6 +334,6 @@ void dalcs_smooth_newton_vary(const struct dalcs_smooth_newton *newton, const do
             change[q] += of->column[j] >= 0 ? gradient[j] * dx[q][j] : 0.0;
         }
     }
-    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->matrix, newton->n,
-                         newton->pivot, change, newton->n);
+    (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->work.matrix, newton->n,
+                         newton->work.pivot, change, newton->n);
 }

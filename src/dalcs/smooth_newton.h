@@ -27,20 +27,27 @@ struct dalcs_smooth_newton {
     double (*tangent)[2]; /* [n] where tangents are */
     double (*other)[2];   /* [3][n_smooth] arguments elsewhere, for who asks what is between */
     double *slope;        /* [n][2][n] S */
-    double *matrix;       /* [n][n] work */
-    double *step;         /* [n] work */
-    double *correction;   /* [n] work */
-    int *pivot;           /* [n] work */
-    bool limits;          /* a tangent is elsewhere than its argument */
-    bool is_damped;       /* tangents are at arguments, and steps that lead away are halved */
-    int n_steps;          /* since the beginning */
-    int halved;           /* times that the last step was halved, or the beginning was moved */
-    bool
-        is_refused; /* it ended where the rest of the circuit has no answer for the values that were tried */
-    bool at_pole;  /* what divides in the worst one passes 0 */
-    int worst;     /* of the system's smooth inputs, the one that agrees least */
-    double defect; /* of the last check: over the terms of each function alone, in the tolerance */
-    double defect_before; /* of the one before */
+
+    struct {
+        double *matrix;     /* [n][n] */
+        double *step;       /* [n] */
+        double *correction; /* [n] */
+        int *pivot;         /* [n] */
+    } work;
+
+    bool limits;    /* a tangent is elsewhere than its argument */
+    bool is_damped; /* tangents are at arguments, and steps that lead away are halved */
+    int n_steps;    /* since the beginning */
+    int halved;     /* times that the last step was halved, or the beginning was moved */
+
+    struct {
+        bool is_refused; /* the rest of the circuit has no answer for the values that were tried */
+        bool at_pole;    /* what divides in the worst one passes 0 */
+        int worst;       /* of the system's smooth inputs, the one that agrees least */
+        double
+            defect; /* of the last check: over the terms of each function alone, in the tolerance */
+        double defect_before; /* of the one before */
+    } outcome;
     struct dalcs_smooth_inner inner;
 };
 

@@ -165,17 +165,17 @@ static bool is_name(const struct dalcs_token *token) {
 
 /* The end of a section; also of one that is read because it was asked for. */
 static void end_section(struct dalcs_lexer *lexer, const struct dalcs_card *card) {
-    if (lexer->open == NULL) {
+    if (lexer->section.open == NULL) {
         dalcs_lexer_report(lexer, card->token, "a section is: .lib name ... .endl",
                            "there is no section to end");
         return;
     }
-    if (card->n > 1 && strcmp(card->token[1].text, lexer->open[1].text) != 0) {
+    if (card->n > 1 && strcmp(card->token[1].text, lexer->section.open[1].text) != 0) {
         dalcs_lexer_report(lexer, &card->token[1], NULL, "the section that ends here is '%s'",
-                           lexer->open[1].text);
+                           lexer->section.open[1].text);
     }
-    lexer->open = NULL;
-    lexer->skipping = lexer->section != NULL;
+    lexer->section.open = NULL;
+    lexer->section.is_skipped = lexer->section.wanted != NULL;
 }
 
 enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer, const struct dalcs_card *card) {
@@ -209,9 +209,9 @@ enum dalcs_status dalcs_include_card(struct dalcs_lexer *lexer, const struct dal
         lexer->netlist->misses_file = true;
         return DALCS_OK;
     }
-    if (is_lib && card->n == 2 && lexer->open == NULL && endl_follows(lexer)) {
-        lexer->open = token;
-        lexer->skipping = true;
+    if (is_lib && card->n == 2 && lexer->section.open == NULL && endl_follows(lexer)) {
+        lexer->section.open = token;
+        lexer->section.is_skipped = true;
         return DALCS_OK;
     }
     const char *name = file_name(lexer, &token[1]);
@@ -230,7 +230,7 @@ static const char *word_at(const struct dalcs_lexer *lexer, size_t p) {
 
 enum dalcs_status dalcs_include_skips(struct dalcs_lexer *lexer, size_t p, bool *skips) {
     *skips = true;
-    if (lexer->open != NULL) {
+    if (lexer->section.open != NULL) {
         /* A section inside a file that is read as a whole. */
         *skips = !dalcs_lexer_starts_with(lexer, p, ".endl");
         return DALCS_OK;
@@ -247,10 +247,10 @@ enum dalcs_status dalcs_include_skips(struct dalcs_lexer *lexer, size_t p, bool 
     if (name == NULL) {
         return DALCS_E_NOMEM;
     }
-    if (dalcs_names_find(lexer->sections, name) < 0) {
-        DALCS_TRY(dalcs_names_add(lexer->sections, name, 0));
+    if (dalcs_names_find(lexer->section.all, name) < 0) {
+        DALCS_TRY(dalcs_names_add(lexer->section.all, name, 0));
     }
-    if (strcmp(name, lexer->section) == 0) {
+    if (strcmp(name, lexer->section.wanted) == 0) {
         struct dalcs_token *open = dalcs_arena_alloc(&lexer->netlist->arena, 2, sizeof *open);
         struct dalcs_source_line *where =
             dalcs_arena_alloc(&lexer->netlist->arena, 1, sizeof *where);
@@ -265,9 +265,9 @@ enum dalcs_status dalcs_include_skips(struct dalcs_lexer *lexer, size_t p, bool 
                                        .offset = (int)(line - lexer->at),
                                        .length = sizeof ".lib" - 1};
         open[1].text = name;
-        lexer->open = open;
-        lexer->section_found = true;
-        lexer->skipping = false;
+        lexer->section.open = open;
+        lexer->section.is_found = true;
+        lexer->section.is_skipped = false;
     }
     return DALCS_OK;
 }

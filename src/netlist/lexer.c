@@ -306,14 +306,14 @@ enum dalcs_status dalcs_lexer_read_line(struct dalcs_lexer *lexer, size_t begin,
         starts_slashes(lexer->raw + p)) {
         return DALCS_OK;
     }
-    if (lexer->raw[p] == '+' && !lexer->skipping) {
+    if (lexer->raw[p] == '+' && !lexer->section.is_skipped) {
         return continue_card(lexer, p, begin);
     }
     if (lexer->raw[p] == ')' && is_open(lexer)) {
         return read_tokens(lexer, p, begin); /* of a model whose last line has lost its + */
     }
     DALCS_TRY(dalcs_lexer_flush(lexer));
-    if (lexer->skipping) {
+    if (lexer->section.is_skipped) {
         bool skips;
         DALCS_TRY(dalcs_include_skips(lexer, p, &skips));
         if (skips) {

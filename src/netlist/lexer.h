@@ -22,11 +22,14 @@ struct dalcs_lexer {
 
     size_t at; /* the line being read starts here; in the end the length of the text */
     size_t length;
-    const char *section; /* the only section of a library that is wanted, else NULL */
-    bool section_found;
-    bool skipping;                  /* a section that is not wanted, until .endl */
-    const struct dalcs_token *open; /* the .lib of the section being read, else NULL */
-    struct dalcs_names *sections;   /* of the library; for messages */
+
+    struct {
+        const char *wanted; /* the only one of a library, else NULL */
+        bool is_found;
+        bool is_skipped;                /* one that is not wanted, until .endl */
+        const struct dalcs_token *open; /* the .lib of the one being read, else NULL */
+        struct dalcs_names *all;        /* of the library; for messages */
+    } section;
 
     size_t ascii_begin, ascii_end;        /* raw between them is ASCII */
     const struct dalcs_source_line *line; /* the present one, made when first needed */

@@ -154,18 +154,19 @@ static enum dalcs_status read_lines(struct dalcs_lexer *lexer, size_t begin) {
 
 /* A library was read to its end: was the section there, and closed? */
 static void check_section(struct dalcs_lexer *lexer, const struct dalcs_token *section) {
-    if (section != NULL && !lexer->section_found) {
+    if (section != NULL && !lexer->section.is_found) {
         struct dalcs_arena *arena = &lexer->netlist->arena;
-        const char *near = dalcs_names_nearest(lexer->sections, section->text);
-        const char *list = dalcs_names_join(lexer->sections, 8, arena);
+        const char *near = dalcs_names_nearest(lexer->section.all, section->text);
+        const char *list = dalcs_names_join(lexer->section.all, 8, arena);
         const char *hint = near != NULL   ? dalcs_arena_printf(arena, "did you mean '%s'?", near)
                            : list != NULL ? dalcs_arena_printf(arena, "its sections are: %s", list)
                                           : "a section is: .lib name ... .endl";
         dalcs_lexer_report(lexer, section, hint, "'%s' has no section '%s'", lexer->source->name,
                            section->text);
         lexer->netlist->misses_file = true;
-    } else if (lexer->open != NULL) {
-        dalcs_lexer_report(lexer, lexer->open, "add a line: .endl", "this section is never closed");
+    } else if (lexer->section.open != NULL) {
+        dalcs_lexer_report(lexer, lexer->section.open, "add a line: .endl",
+                           "this section is never closed");
     }
 }
 
@@ -194,9 +195,9 @@ enum dalcs_status dalcs_source_read(struct dalcs_netlist *netlist,
     }
     struct dalcs_names sections = {0};
     lexer.length = length;
-    lexer.section = section != NULL ? section->text : NULL;
-    lexer.skipping = section != NULL;
-    lexer.sections = &sections;
+    lexer.section.wanted = section != NULL ? section->text : NULL;
+    lexer.section.is_skipped = section != NULL;
+    lexer.section.all = &sections;
     const size_t bom = length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
     const enum dalcs_status status = read_lines(&lexer, bom);
     if (status == DALCS_OK) {

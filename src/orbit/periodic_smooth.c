@@ -101,7 +101,7 @@ enum dalcs_status dalcs_flow_smooth_begin(struct dalcs_periodic_flow *flow,
 void dalcs_flow_smooth_vary(struct dalcs_periodic_flow *flow, double *out) {
     const struct dalcs_flow_smooth *p = flow->smooth;
     const size_t size = answer_size(flow);
-    double *change = p->newton.step;
+    double *change = p->newton.work.step;
     read(flow, out);
     dalcs_smooth_newton_vary(&p->newton, p->dx, change);
     for (int q = 0; q < p->newton.n; q++) {

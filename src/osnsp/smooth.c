@@ -185,7 +185,7 @@ static enum dalcs_status certify(struct dalcs_osnsp *p, const double *y) {
     memcpy(p->smooth.other, y, (size_t)dalcs_system_n_columns(s) * sizeof(*y));
     dalcs_certificate_evaluate_either(p, u, p->smooth.other, &clash); /* as it was */
     p->least_norm = is_least_norm;
-    n->is_refused = !holds;
+    n->outcome.is_refused = !holds;
     return holds ? DALCS_OK : DALCS_NOT_CONVERGED;
 }
 
@@ -235,7 +235,7 @@ static enum dalcs_status iterate(struct dalcs_osnsp *p, double sigma, double *y,
             dalcs_smooth_newton_begin(n, n->x);
             continue;
         }
-        n->is_refused = status == DALCS_INFEASIBLE;
+        n->outcome.is_refused = status == DALCS_INFEASIBLE;
         if (status != DALCS_OK) {
             return status == DALCS_INFEASIBLE ? DALCS_NOT_CONVERGED : status;
         }

@@ -116,9 +116,9 @@ enum dalcs_status dalcs_script_command(struct dalcs_script *script, size_t index
         script->continues = true;
         return DALCS_OK;
     case DALCS_STATEMENT_GOTO:
-        script->goes_to = s->rest;
-        script->gone_from = s;
-        return ++script->n_jumps <= DALCS_MOST_ROUNDS
+        script->jump.label = s->rest;
+        script->jump.from = s;
+        return ++script->jump.n <= DALCS_MOST_ROUNDS
                    ? DALCS_OK
                    : dalcs_script_refuse(script, s, NULL, "goto was done %d times",
                                          (int)DALCS_MOST_ROUNDS);

@@ -14,7 +14,7 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
 static enum dalcs_status execute_body(struct dalcs_script *script, size_t loop, bool *stops) {
     const struct dalcs_statement *s = &script->statements.statement[loop];
     const enum dalcs_status status = execute(script, loop + 1, s->end);
-    *stops = script->breaks || script->quits || script->goes_to != NULL;
+    *stops = script->breaks || script->quits || script->jump.label != NULL;
     script->breaks = script->continues = false;
     return status;
 }
@@ -120,7 +120,7 @@ static size_t find_label(const struct dalcs_script *script, size_t begin, size_t
     const struct dalcs_statements *all = &script->statements;
     for (size_t k = begin; k < end; k++) {
         const struct dalcs_statement *s = &all->statement[k];
-        if (s->kind == DALCS_STATEMENT_LABEL && strcmp(s->rest, script->goes_to) == 0) {
+        if (s->kind == DALCS_STATEMENT_LABEL && strcmp(s->rest, script->jump.label) == 0) {
             return k;
         }
         k = s->end > k ? end_of(all, k) : k; /* not into a block */
@@ -132,12 +132,12 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
     const struct dalcs_statements *all = &script->statements;
     enum dalcs_status status = DALCS_OK;
     for (size_t k = begin; k < end && status == DALCS_OK; k++) {
-        if (script->goes_to != NULL) {
+        if (script->jump.label != NULL) {
             k = find_label(script, begin, end);
             if (k == end) {
                 return DALCS_OK; /* the block around this one may have it */
             }
-            script->goes_to = NULL;
+            script->jump.label = NULL;
             continue;
         }
         if (script->quits || script->breaks || script->continues) {
@@ -170,7 +170,7 @@ static enum dalcs_status execute(struct dalcs_script *script, size_t begin, size
             dalcs_arena_finish(&script->arena);
             break;
         }
-        if (script->goes_to != NULL && k + 1 >= end) {
+        if (script->jump.label != NULL && k + 1 >= end) {
             k = begin - 1; /* the label may stand before this, the last statement */
         }
     }
@@ -219,11 +219,11 @@ const char *dalcs_script_variable(const struct dalcs_script *script, const char 
 
 enum dalcs_status dalcs_script_execute(struct dalcs_script *script, bool *quits) {
     enum dalcs_status status = execute(script, 0, script->statements.n);
-    if (status == DALCS_OK && script->goes_to != NULL) {
-        status = dalcs_script_refuse(script, script->gone_from, "label name",
-                                     "there is no label '%s' around this", script->goes_to);
+    if (status == DALCS_OK && script->jump.label != NULL) {
+        status = dalcs_script_refuse(script, script->jump.from, "label name",
+                                     "there is no label '%s' around this", script->jump.label);
     }
-    script->goes_to = NULL;
+    script->jump.label = NULL;
     if (quits != NULL) {
         *quits = script->quits;
     }

@@ -34,9 +34,13 @@ struct dalcs_script {
     size_t n_signals;         /* in a row of the run at hand */
     bool has_run;             /* an analysis, since the lines were read */
     bool quits, breaks, continues;
-    const char *goes_to; /* a label that is looked for; NULL: none */
-    const struct dalcs_statement *gone_from;
-    long n_jumps;   /* by goto */
+
+    struct {
+        const char *label; /* that is looked for; NULL: none */
+        const struct dalcs_statement *from;
+        long n; /* so far */
+    } jump;     /* by goto */
+
     bool is_silent; /* nothing is said: it is tried whether a text has a value yet */
 };
 

@@ -95,9 +95,9 @@ enum dalcs_status dalcs_audit_members_make(struct dalcs_audit_run *a) {
         m->device = dalcs_arena_alloc(&a->arena, (size_t)m->n_devices, sizeof(int));
         m->lambda = dalcs_arena_alloc(&a->arena, (size_t)m->n_lambdas, sizeof(int));
         m->lambda_pair = dalcs_arena_alloc(&a->arena, (size_t)m->n_lambdas, sizeof(int));
-        m->last_mode = dalcs_arena_alloc(&a->arena, (size_t)a->euler->component[k].osnsp.n_words,
+        m->last.mode = dalcs_arena_alloc(&a->arena, (size_t)a->euler->component[k].osnsp.n_words,
                                          sizeof(uint64_t));
-        if (m->last_mode == NULL || m->node == NULL || m->node_column == NULL ||
+        if (m->last.mode == NULL || m->node == NULL || m->node_column == NULL ||
             m->device == NULL || m->lambda == NULL || m->lambda_pair == NULL) {
             return DALCS_E_NOMEM;
         }

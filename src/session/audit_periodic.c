@@ -215,8 +215,8 @@ enum dalcs_status dalcs_audit_periodic_start(struct dalcs_audit_periodic *a,
     DALCS_TRY(dalcs_periodic_values_make(a));
     a->seen = dalcs_arena_alloc(&a->arena, (size_t)asked->log->n_parts, sizeof *a->seen);
     DALCS_TRY(a->seen != NULL ? DALCS_OK : DALCS_E_NOMEM);
-    for (size_t k = 0; k < a->n_columns; k++) {
-        a->weight[k] = 0.5 + dalcs_congruential_chance(&a->seed);
+    for (size_t k = 0; k < a->work.n_columns; k++) {
+        a->work.weight[k] = 0.5 + dalcs_congruential_chance(&a->seed);
     }
     DALCS_TRY(dalcs_audit_response_rows(&a->rows, r, asked->euler, asked->of, asked->n));
     const struct dalcs_response_devices devices = {a->of.are_there, a->of.are_restless};

@@ -68,13 +68,17 @@ struct dalcs_audit_periodic {
     } * seen;
 
     struct dalcs_periodic_side first, end,
-        start;                     /* of the period; of the last piece; of the present one */
-    double complex *column, *rate; /* [columns] work: values and derivatives */
-    double complex *kept;          /* [rows that are kept] work */
-    size_t n_columns;              /* the most of a part */
-    double *weight;                /* [columns] random */
-    bool *is_known;                /* [n_nodes] work */
-    int n, next;                   /* frequencies; which is looked at next */
+        start; /* of the period; of the last piece; of the present one */
+
+    struct {
+        size_t n_columns;              /* the most of a part */
+        double complex *column, *rate; /* [n_columns] values and derivatives */
+        double complex *kept;          /* [rows that are kept] */
+        double *weight;                /* [n_columns] random */
+        bool *is_known;                /* [n_nodes] */
+    } work;
+
+    int n, next; /* frequencies; which is looked at next */
     uint64_t seed;
     struct dalcs_arena arena;
 };

@@ -62,8 +62,8 @@ static struct dalcs_mean *mean_of(struct dalcs_audit_periodic *a,
                 const bool is_open = dalcs_periodic_values_is_open(flow, map, r->read[m]);
                 sum += is_open ? 0.0
                        : k == flow->n_columns
-                           ? a->weight[r->read[m]] * map->driven[at]
-                           : a->weight[r->read[m]] * map->state[(size_t)k * size + at];
+                           ? a->work.weight[r->read[m]] * map->driven[at]
+                           : a->work.weight[r->read[m]] * map->state[(size_t)k * size + at];
             }
             mean->value[k] += map->h * weight[i] * sum;
         }
@@ -98,8 +98,8 @@ void dalcs_periodic_means_note_jump(struct dalcs_audit_periodic *a,
     *jump = (struct dalcs_periodic_jump){0};
     for (int m = 0; m < r->n_read; m++) {
         const int column = r->read[m];
-        jump->value += a->weight[column] * (a->end.y[column] - behind->y[column]);
-        jump->size += a->weight[column] * (fabs(a->end.y[column]) + fabs(behind->y[column]));
+        jump->value += a->work.weight[column] * (a->end.y[column] - behind->y[column]);
+        jump->size += a->work.weight[column] * (fabs(a->end.y[column]) + fabs(behind->y[column]));
     }
 }
 
@@ -121,7 +121,7 @@ enum dalcs_status dalcs_periodic_means_check(struct dalcs_audit_periodic *a, dou
     for (int m = 0; m < r->n_read; m++) {
         const int column = r->read[m];
         const double complex y = of->part[0][column] + of->part[1][column] * I;
-        const double complex term = r->flow->period * a->weight[column] * y;
+        const double complex term = r->flow->period * a->work.weight[column] * y;
         sum += term;
         size += cabs(term);
     }

@@ -13,7 +13,7 @@ static bool feeds(const struct dalcs_device *d, const bool *is_known) {
 
 static void find_fed(struct dalcs_audit_periodic *a) {
     const struct dalcs_circuit *c = &a->run->s->circuit;
-    bool *is_known = a->is_known;
+    bool *is_known = a->work.is_known;
     for (int n = 0; n < c->n_nodes; n++) {
         is_known[n] = n == 0 || a->rows.node_system[n] == a->look.part;
     }

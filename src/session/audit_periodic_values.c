@@ -39,23 +39,25 @@ enum dalcs_status dalcs_periodic_values_make(struct dalcs_audit_periodic *a) {
         n_columns = n > n_columns ? n : n_columns;
         n_rows = stride > n_rows ? stride : n_rows;
     }
-    a->n_columns = n_columns;
+    a->work.n_columns = n_columns;
     a->of.are_there = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_there);
     a->of.are_restless = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.are_restless);
     a->of.change = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.change);
     a->of.state = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.state);
     a->of.fed = dalcs_arena_alloc(&a->arena, n_devices, sizeof *a->of.fed);
     a->term = dalcs_arena_alloc(&a->arena, DALCS_STIMULUS_MOST_TERMS, sizeof *a->term);
-    a->rate = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->rate);
-    a->weight = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->weight);
-    a->column = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->column);
-    a->kept = dalcs_arena_alloc(&a->arena, n_rows, sizeof *a->kept);
-    a->is_known = dalcs_arena_alloc(&a->arena, (size_t)a->readout->n_nodes, sizeof *a->is_known);
+    a->work.rate = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->work.rate);
+    a->work.weight = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->work.weight);
+    a->work.column = dalcs_arena_alloc(&a->arena, n_columns, sizeof *a->work.column);
+    a->work.kept = dalcs_arena_alloc(&a->arena, n_rows, sizeof *a->work.kept);
+    a->work.is_known =
+        dalcs_arena_alloc(&a->arena, (size_t)a->readout->n_nodes, sizeof *a->work.is_known);
     return a->of.are_there != NULL && a->of.are_restless != NULL && a->of.change != NULL &&
-                   a->of.fed != NULL && a->of.state != NULL && a->term != NULL && a->rate != NULL &&
-                   a->weight != NULL && a->column != NULL && a->kept != NULL &&
-                   a->is_known != NULL && make_side(a, &a->first, n_columns) &&
-                   make_side(a, &a->end, n_columns) && make_side(a, &a->start, n_columns)
+                   a->of.fed != NULL && a->of.state != NULL && a->term != NULL &&
+                   a->work.rate != NULL && a->work.weight != NULL && a->work.column != NULL &&
+                   a->work.kept != NULL && a->work.is_known != NULL &&
+                   make_side(a, &a->first, n_columns) && make_side(a, &a->end, n_columns) &&
+                   make_side(a, &a->start, n_columns)
                ? DALCS_OK
                : DALCS_E_NOMEM;
 }
@@ -83,20 +85,20 @@ static void take(const struct dalcs_audit_periodic *a, struct dalcs_response_val
     for (int n = 0; n < r->n_nodes; n++) {
         const bool is_here = n > 0 && a->rows.node_system[n] == a->look.part;
         const int column = is_here ? r->node_column[n] : -1;
-        v->v[n] = column >= 0 ? a->column[column] : n == 0 || is_here ? 0.0 : NAN;
-        v->v_rate[n] = column >= 0 ? a->rate[column] : 0.0;
+        v->v[n] = column >= 0 ? a->work.column[column] : n == 0 || is_here ? 0.0 : NAN;
+        v->v_rate[n] = column >= 0 ? a->work.rate[column] : 0.0;
     }
     for (int d = 0; d < r->n_devices; d++) {
         const bool is_read = a->of.are_there[d] && r->start[d + 1] > r->start[d];
         const int state = a->of.are_there[d] ? a->of.state[d] : -1;
-        v->u[d] = state >= 0 ? a->column[state] : 0.0;
-        v->u_rate[d] = state >= 0 ? a->rate[state] : 0.0;
+        v->u[d] = state >= 0 ? a->work.column[state] : 0.0;
+        v->u_rate[d] = state >= 0 ? a->work.rate[state] : 0.0;
         v->i[d] = v->i_rate[d] = 0.0;
         v->size[d] = is_read ? 0.0 : -1.0;
         for (int k = r->start[d]; k < r->start[d + 1] && is_read; k++) {
-            const double complex term = r->term[k].coefficient * a->column[r->term[k].column];
+            const double complex term = r->term[k].coefficient * a->work.column[r->term[k].column];
             v->i[d] += term;
-            v->i_rate[d] += r->term[k].coefficient * a->rate[r->term[k].column];
+            v->i_rate[d] += r->term[k].coefficient * a->work.rate[r->term[k].column];
             v->size[d] += cabs(term);
         }
     }
@@ -128,8 +130,8 @@ static void read_bystander(struct dalcs_audit_periodic *a, const struct dalcs_ra
                 : side == DALCS_LEFT ? gain[i] * dalcs_slope_before(of, t, a->term)
                                      : gain[i] * dalcs_slope_behind(of, t, a->term);
     }
-    a->column[b->column[k]] = dalcs_radau_bystander(part, k, t, side);
-    a->rate[b->column[k]] = rate;
+    a->work.column[b->column[k]] = dalcs_radau_bystander(part, k, t, side);
+    a->work.rate[b->column[k]] = rate;
 }
 
 /* Outputs of gates are over with the run. In a segment they are straight. */
@@ -142,8 +144,8 @@ static void read_bystanders(struct dalcs_audit_periodic *a, const struct dalcs_r
             continue;
         }
         const double slope = (of->bystanders[1][k] - of->bystanders[0][k]) / (of->to - of->from);
-        a->column[b->column[k]] = of->bystanders[0][k] + (t - of->from) * slope;
-        a->rate[b->column[k]] = slope;
+        a->work.column[b->column[k]] = of->bystanders[0][k] + (t - of->from) * slope;
+        a->work.rate[b->column[k]] = slope;
     }
 }
 
@@ -159,11 +161,11 @@ static void read_segment(struct dalcs_audit_periodic *a, const struct dalcs_rada
                                slope);
     for (int c = 0; c < dalcs_system_n_columns(s); c++) {
         const bool is_open = c >= n_equations && !dalcs_mode_has(segment->mode, c - n_equations);
-        a->column[c] = a->rate[c] = 0.0;
+        a->work.column[c] = a->work.rate[c] = 0.0;
         for (int node = 0; node < l->n_nodes && !is_open; node++) {
             const double value = segment->out[node * l->stride + c];
-            a->column[c] += weight[node] * value;
-            a->rate[c] += slope[node] / segment->h * value;
+            a->work.column[c] += weight[node] * value;
+            a->work.rate[c] += slope[node] / segment->h * value;
         }
     }
 }
@@ -187,7 +189,7 @@ void dalcs_periodic_values_orbit(struct dalcs_audit_periodic *a, double t, enum 
     read_segment(a, part, to->segment, t);
     read_bystanders(a, part, to->segment, t, side);
     for (int m = 0; m < dalcs_system_n_columns(part->component->system); m++) {
-        to->y[m] = creal(a->column[m]);
+        to->y[m] = creal(a->work.column[m]);
     }
     take(a, &to->at);
     complete(a, &to->at);
@@ -232,20 +234,21 @@ static void find_columns(const struct dalcs_audit_periodic *a,
     const size_t size = dalcs_periodic_flow_size(flow);
     const int n = flow->kept.n;
     for (int m = 0; m < n; m++) {
-        a->kept[m] = 0.0;
+        a->work.kept[m] = 0.0;
     }
     for (int i = 0; i < flow->stages.layout.n_nodes; i++) {
         const double complex by = weight[i] * back * passed->phase;
         for (int m = 0; m < n && by != 0.0; m++) {
-            a->kept[m] += by * map->driven[(size_t)i * (size_t)n + (size_t)m];
+            a->work.kept[m] += by * map->driven[(size_t)i * (size_t)n + (size_t)m];
         }
     }
     for (int k = 0; k < flow->n_columns; k++) {
-        add_rows(flow, weight, map->state + (size_t)k * size, back * passed->start[k], a->kept);
+        add_rows(flow, weight, map->state + (size_t)k * size, back * passed->start[k],
+                 a->work.kept);
     }
     for (int c = 0; c < dalcs_system_n_columns(flow->system); c++) {
         const bool is_open = dalcs_periodic_values_is_open(flow, map, c);
-        column[c] = is_open ? 0.0 : a->kept[flow->kept.place[c]];
+        column[c] = is_open ? 0.0 : a->work.kept[flow->kept.place[c]];
     }
 }
 
@@ -267,9 +270,9 @@ void dalcs_periodic_values_small(struct dalcs_audit_periodic *a,
         weight[i] = i == node ? 1.0 : 0.0;
         slope[i] /= h;
     }
-    find_columns(a, passed, weight, back, a->column);
+    find_columns(a, passed, weight, back, a->work.column);
     if (has_rates) {
-        find_columns(a, passed, slope, back, a->rate);
+        find_columns(a, passed, slope, back, a->work.rate);
     }
     take(a, is);
     is->steepness = steepness_of(method, h);

@@ -115,12 +115,12 @@ void dalcs_audit_reader_keep(const struct dalcs_audit_run *a, int index) {
     const struct dalcs_radau_part *part = &a->radau->part[index];
     const struct dalcs_component *c = part->component;
     struct audit_members *m = &a->part[index];
-    m->last_out = part->segment.out;
-    m->last_end = part->segment.end;
-    m->last_step = part->segment.h;
-    m->last_time = part->segment.t_end;
+    m->last.out = part->segment.out;
+    m->last.end = part->segment.end;
+    m->last.step = part->segment.h;
+    m->last.time = part->segment.t_end;
     for (int k = 0; k < c->osnsp.n_words; k++) {
-        m->last_mode[k] = c->osnsp.mode[k];
+        m->last.mode[k] = c->osnsp.mode[k];
     }
 }
 
@@ -131,25 +131,25 @@ static void read_before(void *user, int index, double earlier, struct dalcs_audi
     const struct dalcs_component *c = part->component;
     const struct audit_members *m = &a->part[index];
     const int n_equations = dalcs_system_n_equations(c->system);
-    if (m->last_out == NULL) { /* the first one begins there */
+    if (m->last.out == NULL) { /* the first one begins there */
         read_state(user, index, s);
         return;
     }
     dalcs_recurrence_complete_before(part);
     double *present = part->segment.out;
-    part->segment.out = m->last_out;
-    dalcs_step_values(part, m->last_end - earlier / m->last_step, part->work.y1);
+    part->segment.out = m->last.out;
+    dalcs_step_values(part, m->last.end - earlier / m->last.step, part->work.y1);
     part->segment.out = present;
     for (int d = 0; d < c->system->n_pairs; d++) {
-        part->work.y1[n_equations + d] *= dalcs_mode_has(m->last_mode, d) ? 1.0 : 0.0;
+        part->work.y1[n_equations + d] *= dalcs_mode_has(m->last.mode, d) ? 1.0 : 0.0;
     }
     for (int i = 0; i < part->excitation.bystanders.n; i++) {
         part->work.y1[part->excitation.bystanders.column[i]] =
-            dalcs_radau_bystander(part, i, m->last_time - earlier, DALCS_LEFT);
+            dalcs_radau_bystander(part, i, m->last.time - earlier, DALCS_LEFT);
     }
-    s->t = m->last_time - earlier;
+    s->t = m->last.time - earlier;
     s->side = DALCS_LEFT;
-    copy_answer(a, index, part->work.y1, m->last_mode, s);
+    copy_answer(a, index, part->work.y1, m->last.mode, s);
 }
 
 /* ---- As it is stored ----------------------------------------------------------------------------- */

@@ -16,15 +16,20 @@ struct audit_members {
     struct dalcs_audit_polynomials stored; /* the present segment */
     struct dalcs_audit_stretch stretch;    /* likewise */
     bool has_maps;
-    double work, brief_work;        /* of a segment, in instructions; of one that recurs */
-    double elements;                /* of its maps, likewise */
+
+    struct {                   /* in instructions */
+        double segment, brief; /* of a segment; of one that recurs */
+        double elements;       /* of its maps */
+    } work;
     struct dalcs_stage_entry *map;  /* that gave it; NULL: none */
     struct dalcs_stage_entry *held; /* that of segments that the auditor gathers; NULL: of none */
-    /* Of the segment that ended last, where it did. */
-    double *last_out;
-    double last_end, last_time; /* in steps; s */
-    double last_step;           /* s */
-    uint64_t *last_mode;
+
+    struct { /* the segment that ended last, where it did */
+        double *out;
+        double end, time; /* in steps; s */
+        double step;      /* s */
+        uint64_t *mode;
+    } last;
     struct audit_present *present;
     struct dalcs_audit_batch *batch;
 };
@@ -91,10 +96,10 @@ static inline bool dalcs_audit_reader_repeats(const struct dalcs_radau_part *par
                                               const struct audit_members *m) {
     const struct dalcs_osnsp *osnsp = &part->component->osnsp;
     const struct dalcs_part_segment *s = &part->segment;
-    bool is_same = m->map != NULL && dalcs_audit_entry_of(s) == m->map && s->h == m->last_step &&
-                   s->end == m->last_end && !s->by_euler && !part->component->positions.joined;
+    bool is_same = m->map != NULL && dalcs_audit_entry_of(s) == m->map && s->h == m->last.step &&
+                   s->end == m->last.end && !s->by_euler && !part->component->positions.joined;
     for (int k = 0; is_same && k < osnsp->n_words; k++) {
-        is_same = osnsp->mode[k] == m->last_mode[k];
+        is_same = osnsp->mode[k] == m->last.mode[k];
     }
     return is_same && (s->late != NULL || dalcs_audit_begins_with_input(part));
 }

@@ -43,16 +43,16 @@ struct dalcs_audit_stretch *dalcs_audit_revisit(void *user, int index,
     struct dalcs_radau_part *part = &a->radau->part[index];
     struct dalcs_part_segment *s = &part->segment;
     m->present->segment = *s;
-    m->present->last_out = m->last_out;
-    m->present->last_time = m->last_time;
+    m->present->last_out = m->last.out;
+    m->present->last_time = m->last.time;
     for (int k = 0; k < part->component->osnsp.n_words; k++) {
         m->present->mode[k] = part->component->osnsp.mode[k];
     }
-    take_mode(part, m->last_mode);
+    take_mode(part, m->last.mode);
     s->t = present->from;
     s->t_end = present->to;
-    s->h = m->last_step;
-    s->end = s->end_before = m->last_end;
+    s->h = m->last.step;
+    s->end = s->end_before = m->last.end;
     s->by_euler = s->is_coarse = false;
     s->in = present->input;
     s->out = m->present->room[0];
@@ -62,11 +62,11 @@ struct dalcs_audit_stretch *dalcs_audit_revisit(void *user, int index,
     s->in_before = before->input;
     s->out_before = m->present->room[1];
     s->late_before = m->held;
-    m->last_out = s->out_before;
-    m->last_time = before->to;
+    m->last.out = s->out_before;
+    m->last.time = before->to;
     struct dalcs_audit_stretch *stretch = dalcs_audit_reader_stretch(a, index, s->t_end);
     stretch->is_last = false;
-    stretch->first_look = m->elements;
+    stretch->first_look = m->work.elements;
     return stretch;
 }
 
@@ -76,6 +76,6 @@ void dalcs_audit_go_back(void *user, int index) {
     struct dalcs_radau_part *part = &a->radau->part[index];
     part->segment = m->present->segment;
     take_mode(part, m->present->mode);
-    m->last_out = m->present->last_out;
-    m->last_time = m->present->last_time;
+    m->last.out = m->present->last_out;
+    m->last.time = m->present->last_time;
 }

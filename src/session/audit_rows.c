@@ -18,7 +18,7 @@ static double checking_work(const struct dalcs_audit_run *a) {
     }
     for (int i = 0; i < a->n_stepped; i++) {
         const int k = a->stepped[i];
-        work += a->radau->part[k].segment.late != NULL ? a->part[k].elements : 0.0;
+        work += a->radau->part[k].segment.late != NULL ? a->part[k].work.elements : 0.0;
     }
     return work;
 }

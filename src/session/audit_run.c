@@ -77,9 +77,9 @@ static enum dalcs_status create(struct dalcs_audit_run *a) {
 
 static void start_part(struct audit_members *m, const struct dalcs_radau_part *part) {
     const struct dalcs_stages *stages = &part->stages;
-    m->elements = element_work * stages->n_in * stages->layout.n_fixed;
-    m->brief_work = dalcs_audit_segment_work;
-    m->work = search_work + search_value_work * stages->layout.n_fixed + m->elements;
+    m->work.elements = element_work * stages->n_in * stages->layout.n_fixed;
+    m->work.brief = dalcs_audit_segment_work;
+    m->work.segment = search_work + search_value_work * stages->layout.n_fixed + m->work.elements;
     m->stored = (struct dalcs_audit_polynomials){
         .n_columns = dalcs_system_n_columns(part->component->system),
         .n_nodes = stages->layout.n_nodes,
@@ -205,7 +205,7 @@ void dalcs_audit_run_begin(struct dalcs_audit_run *a) {
 
 static double work_of(const struct dalcs_audit_run *a, const struct audit_members *m,
                       const struct dalcs_part_segment *segment) {
-    double work = segment->late != NULL ? m->brief_work : m->work;
+    double work = segment->late != NULL ? m->work.brief : m->work.segment;
     if (segment->why == DALCS_END_AT_EVENT) {
         work += event_work;
     }
@@ -231,8 +231,8 @@ static inline bool gathers(struct dalcs_audit_run *a, int k) {
         dalcs_stages_hold(m->held);
     }
     dalcs_audit_put(batch, s->t, s->t_end, s->in, work_of(a, m, s));
-    m->last_out = s->out;
-    m->last_time = s->t_end;
+    m->last.out = s->out;
+    m->last.time = s->t_end;
     if (batch->n == DALCS_AUDIT_BATCH) {
         dalcs_audit_ask_batch(a->audit, k);
     }
@@ -267,7 +267,7 @@ static void leave(struct dalcs_audit_run *a, int k, double to) {
     if (!dalcs_audit_passes_over(a->audit, stretch, work) || is_last) {
         stretch->is_last = is_last;
         /* of a late one only what tells that it is a segment was computed */
-        stretch->first_look = segment->late != NULL ? m->elements : 0.0;
+        stretch->first_look = segment->late != NULL ? m->work.elements : 0.0;
         dalcs_audit_leave(a->audit, stretch);
         a->was_left = true;
     }

@@ -81,8 +81,8 @@ static const char *pole_of(enum dalcs_smooth_kind kind) {
 void dalcs_explain_smooth(struct dalcs_session *s, const struct dalcs_component *c,
                           const char *when) {
     const struct dalcs_smooth_newton *newton = c->osnsp.smooth.newton;
-    const struct dalcs_smooth_input *of = &c->system->smooth[newton->worst];
-    if (newton->is_refused && c->osnsp.witness.n_elements > 0) {
+    const struct dalcs_smooth_input *of = &c->system->smooth[newton->outcome.worst];
+    if (newton->outcome.is_refused && c->osnsp.witness.n_elements > 0) {
         const struct dalcs_witness *w = &c->osnsp.witness;
         const char *names = dalcs_join_names(&s->arena, (size_t)w->n_elements, w->element);
         const char *hint = "a resistance in series limits a current, one across bounds a voltage";
@@ -103,7 +103,7 @@ void dalcs_explain_smooth(struct dalcs_session *s, const struct dalcs_component 
                        : of->n > 1
                            ? dalcs_arena_printf(&s->arena, "%s(%s, %s)", name, first, second)
                            : dalcs_arena_printf(&s->arena, "%s(%s)", name, first);
-    if (newton->at_pole) {
+    if (newton->outcome.at_pole) {
         dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
                        "a condition keeps away from it, as in abs(x) > 1m ? 1/x : 0, or "
                        "limit(x, low, high) or max(x, least) bounds what divides",
@@ -111,14 +111,14 @@ void dalcs_explain_smooth(struct dalcs_session *s, const struct dalcs_component 
                        name_owner(s, of->element), pole_of(of->kind));
         return;
     }
-    const double *at = newton->x[newton->worst];
+    const double *at = newton->x[newton->outcome.worst];
     const double x = at[of->column[0] >= 0 ? 0 : 1] + 0.0; /* no -0 */
     dalcs_diag_add(&s->diag, DALCS_ERROR, dalcs_place_of(&s->circuit, of->element),
                    hint_of_smooth(of->kind, x, at[1]),
                    "%s no solution was found: Newton's method finds no value of %s in '%s' that "
                    "agrees with the circuit; the last one tried was %.6g, for an argument of %.6g",
                    when, text == NULL ? "" : text, name_owner(s, of->element),
-                   dalcs_smooth_newton_tried(newton, newton->worst), x);
+                   dalcs_smooth_newton_tried(newton, newton->outcome.worst), x);
 }
 
 bool dalcs_failed_at_pole(const struct dalcs_euler *e, enum dalcs_status status) {
@@ -126,5 +126,5 @@ bool dalcs_failed_at_pole(const struct dalcs_euler *e, enum dalcs_status status)
         status > DALCS_OK && e->failure.system >= 0
             ? e->component[e->failure.system].osnsp.smooth.newton
             : NULL;
-    return newton != NULL && newton->at_pole;
+    return newton != NULL && newton->outcome.at_pole;
 }

@@ -203,7 +203,7 @@ enum dalcs_status dalcs_smooth_step_solve(struct dalcs_radau_part *part,
 
 enum dalcs_status dalcs_smooth_step_refine(struct dalcs_radau_part *part,
                                            struct dalcs_stage_entry **entry) {
-    part->smooth->newton.defect = INFINITY;
+    part->smooth->newton.outcome.defect = INFINITY;
     dalcs_smooth_missed_forget(part);
     const enum dalcs_status status = iterate(part, 0.0, entry);
     return status == DALCS_OK ? dalcs_smooth_missed_add(part, entry) : status;
@@ -254,7 +254,7 @@ enum dalcs_status dalcs_smooth_step_vary_begin(struct dalcs_radau_part *part,
 void dalcs_smooth_step_vary(const struct dalcs_radau_part *part, const double *out, double *in) {
     const struct dalcs_smooth_step *p = part->smooth;
     const struct dalcs_system *s = p->newton.system;
-    double *change = p->newton.step;
+    double *change = p->newton.work.step;
     for (int q = 0; q < p->newton.n; q++) {
         const struct dalcs_smooth_input *of = &s->smooth[q % s->n_smooth];
         const double *y = out + q / s->n_smooth * part->stages.layout.stride;

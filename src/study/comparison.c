@@ -54,8 +54,8 @@ static enum dalcs_status measure_row(struct dalcs_comparison *c, struct dalcs_co
     enum dalcs_status status = dalcs_cost_measure(&row->cost, c->session, &options, c->interrupted);
     if (status == DALCS_OK) {
         read_choices(row, dalcs_session_report(c->session));
-        options.at = c->reference.time;
-        options.n_at = c->reference.n_times;
+        options.at = c->reference.times.at;
+        options.n_at = c->reference.times.n;
         struct dalcs_samples samples;
         status = dalcs_samples_run(&samples, c->session, &options, c->interrupted);
         if (status == DALCS_OK) {
@@ -107,7 +107,8 @@ static enum dalcs_status make_reference(struct dalcs_comparison *c) {
     if (status != DALCS_OK) {
         return status;
     }
-    c->view = r->n_breaks > MAX_BREAKS_SEEN ? r->break_time[r->n_breaks - BREAKS_AT_END] : r->start;
+    c->view =
+        r->breaks.n > MAX_BREAKS_SEEN ? r->breaks.time[r->breaks.n - BREAKS_AT_END] : r->start;
     status = dalcs_reference_spread(r, c->view, N_VIEW);
     return status == DALCS_OK ? dalcs_reference_solve(r) : status;
 }

@@ -141,9 +141,9 @@ static void write_curve(FILE *script, const struct dalcs_comparison *c, const ch
                         const double *value, size_t s, double time_scale, double scale) {
     const struct dalcs_reference *r = &c->reference;
     fprintf(script, "$%s << end_of_data\n", block);
-    for (size_t i = 0; i < r->n_times && value; i++) {
-        if (r->time[i] >= c->view) {
-            fprintf(script, "%.9g %.6g\n", r->time[i] / time_scale,
+    for (size_t i = 0; i < r->times.n && value; i++) {
+        if (r->times.at[i] >= c->view) {
+            fprintf(script, "%.9g %.6g\n", r->times.at[i] / time_scale,
                     value[i * r->n_signals + s] / scale);
         }
     }
@@ -209,11 +209,11 @@ static void write_errors(FILE *script, const struct dalcs_comparison *c, const c
     const struct dalcs_reference *r = &c->reference;
     double time_scale = dalcs_quantity_scale(r->stop);
     fprintf(script, "$%s << end_of_data\n", block);
-    for (size_t i = 0; i < r->n_times && value; i++) {
-        if (r->is_measured[i]) {
+    for (size_t i = 0; i < r->times.n && value; i++) {
+        if (r->times.is_measured[i]) {
             size_t k = i * r->n_signals + s;
             double error = fabs(value[k] - r->samples.value[k]) / r->scale[s];
-            fprintf(script, "%.6g %.3g\n", r->time[i] / time_scale, fmax(error, LEAST_ERROR));
+            fprintf(script, "%.6g %.3g\n", r->times.at[i] / time_scale, fmax(error, LEAST_ERROR));
         }
     }
     fputs("end_of_data\n", script);

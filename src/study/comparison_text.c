@@ -51,10 +51,10 @@ void dalcs_comparison_write_method(FILE *stream, const struct dalcs_comparison *
         "%sErrors are rms over time over the signal's scale, its largest value in the reference "
         "but not less than 1 %% of the largest of its unit: at %zu times, none within %s of the "
         "%zu times where a diode or switch changes or a source has an edge",
-        before, r->n_measured, dalcs_quantity_write(a, r->window, "s", 3), r->n_breaks);
-    if (r->n_jumps > 0) {
+        before, r->times.n_measured, dalcs_quantity_write(a, r->times.window, "s", 3), r->breaks.n);
+    if (r->jumps.n > 0) {
         fprintf(stream, ", nor within %s of the %zu where states jump",
-                dalcs_quantity_write(a, r->jump_window, "s", 3), r->n_jumps);
+                dalcs_quantity_write(a, r->jumps.window, "s", 3), r->jumps.n);
     }
     fprintf(stream, ".%s", after);
     fprintf(

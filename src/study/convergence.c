@@ -27,8 +27,8 @@ static enum dalcs_status measure(struct dalcs_convergence *c, struct dalcs_conve
     options.method = row->stepping.method;
     options.stages = row->stepping.stages;
     options.step = row->step;
-    options.at = c->reference.time;
-    options.n_at = c->reference.n_times;
+    options.at = c->reference.times.at;
+    options.n_at = c->reference.times.n;
     struct dalcs_samples samples;
     enum dalcs_status status = dalcs_samples_run(&samples, c->session, &options, c->interrupted);
     if (status > 0) { /* such a step is not possible: the others go on */
@@ -69,7 +69,7 @@ static enum dalcs_status make_reference(struct dalcs_convergence *c, double larg
         status =
             dalcs_reference_align(r, largest_step, fmin(STEPS_AWAY * largest_step, GAP_AWAY * gap));
     }
-    if (status == DALCS_OK && r->n_times == 0) {
+    if (status == DALCS_OK && r->times.n == 0) {
         status = DALCS_E_OPTION;
     }
     return status == DALCS_OK ? dalcs_reference_solve(r) : status;

@@ -15,8 +15,8 @@ void dalcs_convergence_write_method(FILE *stream, const struct dalcs_convergence
         "%sErrors are the largest of %zu signals at %zu common ends of steps, over the signal's "
         "largest value; no time is within %s of the %zu times where a diode or switch changes "
         "or a source has an edge.%s",
-        before, r->n_signals, r->n_measured, dalcs_quantity_write(text, r->window, "s", 3),
-        r->n_breaks, after);
+        before, r->n_signals, r->times.n_measured,
+        dalcs_quantity_write(text, r->times.window, "s", 3), r->breaks.n, after);
     fprintf(
         stream,
         "%sReference: radau with %d stages and tolerance %g; with %d stages and tolerance %g it "

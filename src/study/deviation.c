@@ -16,8 +16,8 @@ enum dalcs_status dalcs_deviation_measure(struct dalcs_deviation *d,
         dalcs_deviation_finish(d);
         return DALCS_E_NOMEM;
     }
-    for (size_t i = 0; i < reference->n_times; i++) {
-        for (size_t s = 0; s < n && reference->is_measured[i]; s++) {
+    for (size_t i = 0; i < reference->times.n; i++) {
+        for (size_t s = 0; s < n && reference->times.is_measured[i]; s++) {
             double error = fabs(value[i * n + s] - reference->samples.value[i * n + s]);
             error = isfinite(error) ? error / reference->scale[s] : INFINITY;
             d->rms[s] += error * error;
@@ -25,8 +25,9 @@ enum dalcs_status dalcs_deviation_measure(struct dalcs_deviation *d,
         }
     }
     for (size_t s = 0; s < n; s++) {
-        d->rms[s] =
-            reference->n_measured > 0 ? sqrt(d->rms[s] / (double)reference->n_measured) : 0.0;
+        d->rms[s] = reference->times.n_measured > 0
+                        ? sqrt(d->rms[s] / (double)reference->times.n_measured)
+                        : 0.0;
         if (!reference->is_open[s]) {
             d->worst = d->rms[s] > d->worst_rms ? s : d->worst;
             d->worst_rms = fmax(d->worst_rms, d->rms[s]);

@@ -290,8 +290,8 @@ enum dalcs_status dalcs_ngspice_sample(const struct dalcs_ngspice_raw *raw,
             return status;
         }
         size_t k = 0;
-        for (size_t i = 0; i < reference->n_times; i++) {
-            double t = reference->time[i];
+        for (size_t i = 0; i < reference->times.n; i++) {
+            double t = reference->times.at[i];
             while (k < raw->n_points && time_at(raw, k) < t) {
                 k++;
             }

@@ -77,13 +77,13 @@ static void keep(struct dalcs_ngspice_search *search, int k, double *value, char
          trial[k].deviation.worst_rms < trial[search->stock].deviation.worst_rms)) {
         search->stock = k;
         memcpy(search->stock_value, value,
-               search->reference->n_times * search->reference->n_signals * sizeof *value);
+               search->reference->times.n * search->reference->n_signals * sizeof *value);
     }
     if (search->best < 0 ||
         trial[k].deviation.worst_rms < trial[search->best].deviation.worst_rms) {
         search->best = k;
         memcpy(search->best_value, value,
-               search->reference->n_times * search->reference->n_signals * sizeof *value);
+               search->reference->times.n * search->reference->n_signals * sizeof *value);
         free(search->best_netlist);
         search->best_netlist = netlist;
     } else {
@@ -94,7 +94,7 @@ static void keep(struct dalcs_ngspice_search *search, int k, double *value, char
 static enum dalcs_status evaluate(struct dalcs_ngspice_search *search, int k,
                                   const struct dalcs_ngspice_raw *raw, char *netlist) {
     const struct dalcs_reference *reference = search->reference;
-    double *value = dalcs_alloc(reference->n_times * reference->n_signals, sizeof *value);
+    double *value = dalcs_alloc(reference->times.n * reference->n_signals, sizeof *value);
     enum dalcs_status status = value ? dalcs_ngspice_sample(raw, reference, value) : DALCS_E_NOMEM;
     if (status == DALCS_OK) {
         status = dalcs_deviation_measure(&search->trial[k].deviation, reference, value);
@@ -269,7 +269,7 @@ int dalcs_ngspice_search_fastest(const struct dalcs_ngspice_search *search, doub
 }
 
 enum dalcs_status dalcs_ngspice_search_run(struct dalcs_ngspice_search *search) {
-    size_t n = search->reference->n_times * search->reference->n_signals;
+    size_t n = search->reference->times.n * search->reference->n_signals;
     search->stock = search->best = -1;
     search->stock_value = dalcs_alloc(n, sizeof *search->stock_value);
     search->best_value = dalcs_alloc(n, sizeof *search->best_value);

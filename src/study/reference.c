@@ -27,22 +27,22 @@ static struct dalcs_run_options tight(const struct dalcs_reference *r, bool seco
     options.stages = second ? r->second_stages : r->stages;
     options.tolerance = second ? r->second_tolerance : r->tolerance;
     options.record = true;
-    options.at = r->time;
-    options.n_at = r->n_times;
+    options.at = r->times.at;
+    options.n_at = r->times.n;
     return options;
 }
 
 static enum dalcs_status keep_jumps(struct dalcs_reference *r) {
     const struct dalcs_report *report = dalcs_session_report(r->session);
-    r->jump_time = dalcs_alloc(report->n_jumps, sizeof *r->jump_time);
-    if (!r->jump_time) {
+    r->jumps.time = dalcs_alloc(report->n_jumps, sizeof *r->jumps.time);
+    if (!r->jumps.time) {
         return DALCS_E_NOMEM;
     }
-    r->n_jumps = report->n_jumps;
-    for (size_t i = 0; i < r->n_jumps; i++) {
-        r->jump_time[i] = report->jump[i].time;
+    r->jumps.n = report->n_jumps;
+    for (size_t i = 0; i < r->jumps.n; i++) {
+        r->jumps.time[i] = report->jump[i].time;
     }
-    qsort(r->jump_time, r->n_jumps, sizeof *r->jump_time, compare_numbers);
+    qsort(r->jumps.time, r->jumps.n, sizeof *r->jumps.time, compare_numbers);
     return DALCS_OK;
 }
 
@@ -57,22 +57,22 @@ enum dalcs_status dalcs_reference_begin(struct dalcs_reference *r, struct dalcs_
                                   .second_stages = 5,
                                   .tolerance = 1e-11,
                                   .second_tolerance = 1e-10};
-    r->jump_window = JUMP_STEPS * (request.max_step > 0.0 ? request.max_step : request.step);
+    r->jumps.window = JUMP_STEPS * (request.max_step > 0.0 ? request.max_step : request.step);
     const struct dalcs_run_options options = tight(r, false);
     enum dalcs_status status =
-        dalcs_breaks_find(session, &options, interrupted, &r->break_time, &r->n_breaks);
+        dalcs_breaks_find(session, &options, interrupted, &r->breaks.time, &r->breaks.n);
     return status == DALCS_OK ? keep_jumps(r) : status;
 }
 
 double dalcs_reference_median_gap(const struct dalcs_reference *r) {
     double median = r->stop - r->start;
-    double *gap = r->n_breaks > 1 ? dalcs_alloc(r->n_breaks - 1, sizeof *gap) : NULL;
+    double *gap = r->breaks.n > 1 ? dalcs_alloc(r->breaks.n - 1, sizeof *gap) : NULL;
     if (gap) {
-        for (size_t i = 0; i + 1 < r->n_breaks; i++) {
-            gap[i] = r->break_time[i + 1] - r->break_time[i];
+        for (size_t i = 0; i + 1 < r->breaks.n; i++) {
+            gap[i] = r->breaks.time[i + 1] - r->breaks.time[i];
         }
-        qsort(gap, r->n_breaks - 1, sizeof *gap, compare_numbers);
-        median = gap[(r->n_breaks - 1) / 2];
+        qsort(gap, r->breaks.n - 1, sizeof *gap, compare_numbers);
+        median = gap[(r->breaks.n - 1) / 2];
     }
     free(gap);
     return median;
@@ -94,14 +94,14 @@ static bool is_near_any(const double *list, size_t n, double time, double window
 
 static bool is_near_break(const struct dalcs_reference *r, double time, double window) {
     return time <= r->start + window || time >= r->stop - window ||
-           is_near_any(r->break_time, r->n_breaks, time, window) ||
-           is_near_any(r->jump_time, r->n_jumps, time, fmax(window, r->jump_window));
+           is_near_any(r->breaks.time, r->breaks.n, time, window) ||
+           is_near_any(r->jumps.time, r->jumps.n, time, fmax(window, r->jumps.window));
 }
 
 static enum dalcs_status make_room(struct dalcs_reference *r, size_t n) {
-    r->time = dalcs_alloc(n, sizeof *r->time);
-    r->is_measured = dalcs_alloc(n, sizeof *r->is_measured);
-    return r->time && r->is_measured ? DALCS_OK : DALCS_E_NOMEM;
+    r->times.at = dalcs_alloc(n, sizeof *r->times.at);
+    r->times.is_measured = dalcs_alloc(n, sizeof *r->times.is_measured);
+    return r->times.at && r->times.is_measured ? DALCS_OK : DALCS_E_NOMEM;
 }
 
 enum dalcs_status dalcs_reference_spread(struct dalcs_reference *r, double view, size_t n_view) {
@@ -110,16 +110,18 @@ enum dalcs_status dalcs_reference_spread(struct dalcs_reference *r, double view,
         return status;
     }
     double spacing = (r->stop - r->start) / N_SPREAD;
-    r->window = fmin(NEAR_BREAK * (r->stop - r->start), NEAR_GAP * dalcs_reference_median_gap(r));
+    r->times.window =
+        fmin(NEAR_BREAK * (r->stop - r->start), NEAR_GAP * dalcs_reference_median_gap(r));
     size_t k = 0, v = 0;
     while (k < N_SPREAD || v < n_view) {
         double measured = k < N_SPREAD ? r->start + ((double)k + GOLDEN) * spacing : INFINITY;
         double drawn =
             v < n_view ? view + (r->stop - view) * (double)v / (double)(n_view - 1) : INFINITY;
         bool takes_measured = measured <= drawn;
-        r->time[r->n_times] = fmin(measured, drawn);
-        r->is_measured[r->n_times] = takes_measured && !is_near_break(r, measured, r->window);
-        r->n_measured += r->is_measured[r->n_times++] ? 1 : 0;
+        r->times.at[r->times.n] = fmin(measured, drawn);
+        r->times.is_measured[r->times.n] =
+            takes_measured && !is_near_break(r, measured, r->times.window);
+        r->times.n_measured += r->times.is_measured[r->times.n++] ? 1 : 0;
         k += takes_measured ? 1 : 0;
         v += drawn <= measured ? 1 : 0;
     }
@@ -133,22 +135,22 @@ enum dalcs_status dalcs_reference_align(struct dalcs_reference *r, double step, 
     if (status != DALCS_OK) {
         return status;
     }
-    r->window = window;
+    r->times.window = window;
     for (double k = stride; k <= last; k += stride) {
         double time = fmin(k * step, r->stop);
         if (time > r->start && !is_near_break(r, time, window)) {
-            r->is_measured[r->n_times] = true;
-            r->time[r->n_times++] = time;
+            r->times.is_measured[r->times.n] = true;
+            r->times.at[r->times.n++] = time;
         }
     }
-    r->n_measured = r->n_times;
+    r->times.n_measured = r->times.n;
     return DALCS_OK;
 }
 
 static void find_scales(struct dalcs_reference *r) {
     const struct dalcs_plot *plot = r->samples.plot;
     double largest[2] = {0.0, 0.0}; /* by unit */
-    for (size_t i = 0; i < r->n_times; i++) {
+    for (size_t i = 0; i < r->times.n; i++) {
         for (size_t s = 0; s < r->n_signals; s++) {
             double size = fabs(r->samples.value[i * r->n_signals + s]);
             r->scale[s] = fmax(r->scale[s], size);
@@ -172,8 +174,8 @@ static void find_open(struct dalcs_reference *r) {
 }
 
 static void compare_answers(struct dalcs_reference *r, const double *second) {
-    for (size_t i = 0; i < r->n_times; i++) {
-        for (size_t s = 0; s < r->n_signals && r->is_measured[i]; s++) {
+    for (size_t i = 0; i < r->times.n; i++) {
+        for (size_t s = 0; s < r->n_signals && r->times.is_measured[i]; s++) {
             size_t k = i * r->n_signals + s;
             double doubt = fabs(r->samples.value[k] - second[k]) / r->scale[s];
             r->doubt[s] = fmax(r->doubt[s], r->is_open[s] ? 0.0 : doubt);
@@ -223,10 +225,10 @@ enum dalcs_status dalcs_reference_solve(struct dalcs_reference *r) {
 }
 
 void dalcs_reference_finish(struct dalcs_reference *r) {
-    free(r->break_time);
-    free(r->jump_time);
-    free(r->time);
-    free(r->is_measured);
+    free(r->breaks.time);
+    free(r->jumps.time);
+    free(r->times.at);
+    free(r->times.is_measured);
     free(r->scale);
     free(r->is_open);
     free(r->doubt);

@@ -9,16 +9,26 @@ struct dalcs_reference {
     struct dalcs_session *session; /* borrowed */
     const volatile sig_atomic_t *interrupted;
     double start, stop;
-    size_t n_breaks;
-    double *break_time; /* [n_breaks] where signals or their slopes may jump */
-    size_t n_jumps;
-    double *jump_time;  /* [n_jumps] ascending, where states jump: impulses have no value there */
-    double jump_window; /* s */
-    size_t n_times;
-    double *time;      /* [n_times] ascending */
-    bool *is_measured; /* [n_times] the others are for drawing, or near a break */
-    size_t n_measured;
-    double window; /* s; how far from any break and from both ends the measured times are */
+
+    struct {
+        size_t n;
+        double *time; /* [n] where signals or their slopes may jump */
+    } breaks;
+
+    struct {
+        size_t n;
+        double *time;  /* [n] ascending, where states jump: impulses have no value there */
+        double window; /* s */
+    } jumps;
+
+    struct {
+        size_t n;
+        double *at;        /* [n] s, ascending */
+        bool *is_measured; /* [n] the others are for drawing, or near a break */
+        size_t n_measured;
+        double window; /* s; how far from any break and from both ends the measured ones are */
+    } times;
+
     struct dalcs_samples samples;
     size_t n_signals;
     double *scale;     /* [n_signals] the largest |value|, but not less than 1 % of its unit's */

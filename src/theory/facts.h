@@ -22,8 +22,11 @@ struct dalcs_facts {
     const bool *jumps;               /* or NULL */
     double h;
     enum dalcs_hold *hold; /* [n_pairs] switches as they start */
-    int n_diodes, n_switches;
-    bool has_fed_back_switch; /* one that the circuit itself commands */
+
+    struct {
+        int n_diodes, n_switches;
+        bool has_fed_back_switch; /* one that the circuit itself commands */
+    } pairs;
     struct dalcs_cones cones;
     const char *obstacle; /* why matrices are not looked at, when they are not */
     bool is_dense;        /* what follows is there */
@@ -36,8 +39,11 @@ struct dalcs_facts {
     bool steps_are_monotone; /* A = 0 (rcp.h) */
     struct dalcs_relays relays;
     struct dalcs_giving giving;
-    bool has_brogliato;
-    struct dalcs_brogliato brogliato;
+
+    struct {
+        bool is_there;
+        struct dalcs_brogliato of;
+    } brogliato;
     enum dalcs_answer passive;
 };
 

@@ -15,12 +15,16 @@ struct dalcs_lure {
     bool is_dissipative;   /* with `metric` */
     bool by_energy;        /* metric is the stored energy */
     struct dalcs_matrix metric;
-    bool is_refuted;                 /* no P > 0 at all makes it passive */
-    struct dalcs_matrix refutation;  /* the Z of storage.h */
-    const char *open;                /* why neither, when neither */
-    const char *rate_open;           /* what is known of other P where the rate is 0 */
-    struct dalcs_matrix rate_metric; /* that `rate` is of */
-    double rate;          /* 1/s: differences of motions fall as exp(-rate t) in the metric */
+    bool is_refuted;                /* no P > 0 at all makes it passive */
+    struct dalcs_matrix refutation; /* the Z of storage.h */
+    const char *open;               /* why neither, when neither */
+
+    struct {
+        double value; /* 1/s: differences of motions fall as exp(-value t) in the metric */
+        struct dalcs_matrix metric;
+        const char *open; /* what is known of other P where it is 0 */
+    } rate;
+
     int lossless;         /* dimension of what never dissipates; -1: not known */
     double omega;         /* 1/s: 1/2 lambda_max(PA + A'P, P) */
     bool can_shift;       /* sources beside C x are C times something */

@@ -109,27 +109,27 @@ static enum dalcs_status find_rate(struct dalcs_lure_check *c, double *eps) {
         return DALCS_E_NOMEM;
     }
     DALCS_TRY(dalcs_passivity_rate(l, &c->found->metric, eps, work));
-    c->found->rate_metric = c->found->metric;
+    c->found->rate.metric = c->found->metric;
     DALCS_TRY(dalcs_matrix_eigen(&l->A, re, im, NULL, work));
     for (int i = 0; i < l->n; i++) {
         most = fmin(most, -2.0 * re[i]);
     }
-    c->found->rate_open = l->n == 0 ? no_states : not_decaying;
+    c->found->rate.open = l->n == 0 ? no_states : not_decaying;
     if (l->n == 0 || most <= *eps * 1.01) {
         return DALCS_OK;
     }
-    DALCS_TRY(dalcs_storage_rate(&q, most, &other, &P, &c->found->rate_open, work));
+    DALCS_TRY(dalcs_storage_rate(&q, most, &other, &P, &c->found->rate.open, work));
     if (other > *eps) {
         *eps = other;
-        c->found->rate_metric = P;
+        c->found->rate.metric = P;
     }
     return DALCS_OK;
 }
 
 /* Is there no rate, rather than none found? */
 static bool has_no_rate(const struct dalcs_lure *found) {
-    return found->rate_open == dalcs_no_rate || found->rate_open == not_decaying ||
-           found->rate_open == no_states;
+    return found->rate.open == dalcs_no_rate || found->rate.open == not_decaying ||
+           found->rate.open == no_states;
 }
 
 static enum dalcs_status check_rates(struct dalcs_lure_check *c) {
@@ -149,8 +149,8 @@ static enum dalcs_status check_rates(struct dalcs_lure_check *c) {
     }
     double eps;
     DALCS_TRY(find_rate(c, &eps));
-    found->rate = 0.5 * eps;
-    DALCS_TRY(find_omega(c->l, &found->rate_metric, &found->omega, c->f->work));
+    found->rate.value = 0.5 * eps;
+    DALCS_TRY(find_omega(c->l, &found->rate.metric, &found->omega, c->f->work));
     DALCS_TRY(dalcs_findings_condition(
         c->f, "K11", BG09 "definition 2, theorem 3.2", "strictly passive: motions contract",
         eps > 0.0            ? DALCS_YES
@@ -160,7 +160,7 @@ static enum dalcs_status check_rates(struct dalcs_lure_check *c) {
             ? "the largest eps found is %.6g 1/s; differences fall as exp(-eps t/2) in the norm "
               "of its P"
             : "eps = %.6g 1/s for the P of K10; %s",
-        eps, found->rate_open));
+        eps, found->rate.open));
     DALCS_TRY(dalcs_findings_condition(
         c->f, "K12", BG13 "assumption 5.2, (40) in the norm of P, proposition 7.3",
         "omega = 1/2 lambda_max(PA + A'P, P) < 0", dalcs_answer_of(found->omega < 0.0),

@@ -17,10 +17,10 @@ static enum dalcs_status hold_switches(struct dalcs_facts *facts) {
         const struct dalcs_pair *pair = &s->pair[i];
         if (pair->kind == DALCS_PAIR_SWITCH) {
             facts->hold[i] = pair->initially_on ? DALCS_HELD_CLOSED : DALCS_HELD_OPEN;
-            facts->n_switches++;
-            facts->has_fed_back_switch = facts->has_fed_back_switch || !pair->is_direct;
+            facts->pairs.n_switches++;
+            facts->pairs.has_fed_back_switch = facts->pairs.has_fed_back_switch || !pair->is_direct;
         } else {
-            facts->n_diodes++;
+            facts->pairs.n_diodes++;
         }
     }
     return DALCS_OK;
@@ -45,14 +45,14 @@ static enum dalcs_status check_dense(struct dalcs_facts *facts) {
                     facts->blocks.n <= DALCS_MOST_ONE_STEP;
     if (is_small) {
         DALCS_TRY(dalcs_brogliato_check(facts->f, &facts->blocks, facts->h, facts->jumps,
-                                        &facts->brogliato));
-        facts->has_brogliato = true;
+                                        &facts->brogliato.of));
+        facts->brogliato.is_there = true;
     } else {
         DALCS_TRY(dalcs_findings_condition(
             facts->f, "A1-A13", "Brogliato 2022, assumptions 1 to 13",
             "conditions on the blocks of (2.1) and (3.2)", DALCS_NOT_CHECKED, "too large"));
     }
-    if (!facts->system->monotone || facts->n_diodes == 0) {
+    if (!facts->system->monotone || facts->pairs.n_diodes == 0) {
         DALCS_TRY(dalcs_modes_find(&facts->modes, work, &facts->lcs));
     }
     if (facts->has_lcs) {
@@ -97,7 +97,7 @@ static enum dalcs_status check(struct dalcs_facts *facts) {
         enum dalcs_status status = check_dense(facts);
         if (status == DALCS_SINGULAR) { /* numbers that LAPACK finds no answer to */
             facts->obstacle = "its numbers are too far apart";
-            facts->is_dense = facts->has_lcs = facts->has_brogliato = false;
+            facts->is_dense = facts->has_lcs = facts->brogliato.is_there = false;
         } else {
             DALCS_TRY(status);
         }
@@ -142,8 +142,8 @@ static enum dalcs_status hand_over(struct dalcs_checked_part *part,
                                          : "",
         .states = s->n_x,
         .algebraic = s->n_z,
-        .diodes = facts->n_diodes,
-        .switches = facts->n_switches,
+        .diodes = facts->pairs.n_diodes,
+        .switches = facts->pairs.n_switches,
         .summary = dalcs_facts_summary(facts),
         .n_conditions = f->n_conditions,
         .condition = condition,

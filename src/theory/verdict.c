@@ -141,7 +141,7 @@ static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
     }
     if (!facts->modes.is_checked) {
         return dalcs_findings_verdict(facts->f, "step", DALCS_NOT_CHECKED, HSW99 "corollary 3.12",
-                                      "not checked: too many modes (2^%d)", facts->n_diodes);
+                                      "not checked: too many modes (2^%d)", facts->pairs.n_diodes);
     }
     if (dalcs_has_limit(facts)) {
         return limit_of_steps(facts);
@@ -166,10 +166,10 @@ static enum dalcs_status possible_steps(struct dalcs_facts *facts) {
 
 static enum dalcs_status converges(struct dalcs_facts *facts) {
     const struct dalcs_lure *lure = &facts->lure;
-    const struct dalcs_brogliato *b = &facts->brogliato;
+    const struct dalcs_brogliato *b = &facts->brogliato.of;
     bool by_52 = b->converges_52 == DALCS_YES || b->converges_52 == DALCS_CONDITIONAL;
     bool by_59 = b->converges_59 == DALCS_YES || b->converges_59 == DALCS_CONDITIONAL;
-    if (facts->has_brogliato && (by_52 || by_59)) {
+    if (facts->brogliato.is_there && (by_52 || by_59)) {
         const char *which = by_52 ? "5.2" : "5.9";
         return dalcs_findings_verdict(
             facts->f, "convergence", by_52 ? b->converges_52 : b->converges_59,
@@ -189,9 +189,9 @@ static enum dalcs_status converges(struct dalcs_facts *facts) {
     }
     return dalcs_findings_verdict(
         facts->f, "convergence",
-        facts->has_brogliato || !facts->is_dense ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
+        facts->brogliato.is_there || !facts->is_dense ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
         "Brogliato 2022, propositions 5.2 and 5.9", "%s",
-        facts->has_brogliato
+        facts->brogliato.is_there
             ? "convergence of implicit Euler is not shown: neither proposition 5.2 nor 5.9 applies"
             : "convergence of implicit Euler was not checked: too large");
 }

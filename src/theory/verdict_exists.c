@@ -247,7 +247,8 @@ enum dalcs_status dalcs_verdict_exists(struct dalcs_facts *facts) {
 
 static enum dalcs_status unique_states(struct dalcs_facts *facts) {
     const struct dalcs_lure *lure = &facts->lure;
-    const char *given = facts->has_fed_back_switch ? ", for given positions of its switches" : "";
+    const char *given =
+        facts->pairs.has_fed_back_switch ? ", for given positions of its switches" : "";
     if (facts->passive == DALCS_YES) {
         return dalcs_findings_verdict(facts->f, "unique", DALCS_YES,
                                       BG09 "theorem 2; " HSW99 "theorem 6.14", "yes: the states%s",

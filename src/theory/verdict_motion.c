@@ -38,7 +38,7 @@ static enum dalcs_status describe_causes(struct dalcs_facts *facts) {
     DALCS_TRY(list_causes(facts, name, n));
     const char *jumping = dalcs_join_names(facts->f->result, n[0], name[0]);
     const char *still = dalcs_join_names(facts->f->result, n[1], name[1]);
-    bool moves = facts->n_switches > 0;
+    bool moves = facts->pairs.n_switches > 0;
     if (jumping == NULL || still == NULL) {
         return DALCS_E_NOMEM;
     }
@@ -66,13 +66,13 @@ static enum dalcs_status describe_causes(struct dalcs_facts *facts) {
 
 enum dalcs_status dalcs_verdict_jumps(struct dalcs_facts *facts) {
     const struct dalcs_lure *lure = &facts->lure;
-    if (facts->has_lcs && facts->lcs.index_steps == 0 && facts->n_switches == 0 &&
+    if (facts->has_lcs && facts->lcs.index_steps == 0 && facts->pairs.n_switches == 0 &&
         (lure->D_is_P || facts->lcs.m == 0)) {
         return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
                                       BT10 "appendix A.4 (K6): an ordinary differential equation",
                                       "states are continuous for all sources");
     }
-    if (facts->has_lcs && facts->lcs.index_steps == 0 && facts->n_switches == 0 &&
+    if (facts->has_lcs && facts->lcs.index_steps == 0 && facts->pairs.n_switches == 0 &&
         dalcs_are_relays(facts)) {
         return dalcs_findings_verdict(facts->f, "jumps", DALCS_YES,
                                       HSW99 "theorems 6.7 to 6.9; " BG13 "section 6.2",
@@ -127,7 +127,7 @@ static enum dalcs_status judge_linear(struct dalcs_facts *facts) {
 static enum dalcs_status judge_stability(struct dalcs_facts *facts) {
     if (facts->passive == DALCS_YES) {
         return dalcs_findings_verdict(facts->f, "stable", DALCS_YES, BG09 "theorems 3 and 4",
-                                      facts->has_fed_back_switch
+                                      facts->pairs.has_fed_back_switch
                                           ? "yes: the stored energy never grows without sources"
                                           : "yes: the distance of two trajectories never grows, in "
                                             "the norm of the stored energy");
@@ -147,15 +147,15 @@ static enum dalcs_status judge_stability(struct dalcs_facts *facts) {
 
 static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
     const struct dalcs_lure *lure = &facts->lure;
-    const char *held = facts->n_switches > 0 ? ", with the switches where they start" : "";
+    const char *held = facts->pairs.n_switches > 0 ? ", with the switches where they start" : "";
     bool applies = facts->passive == DALCS_YES && facts->has_lcs && lure->is_dissipative;
-    if (applies && lure->rate > 0.0) {
+    if (applies && lure->rate.value > 0.0) {
         DALCS_TRY(dalcs_findings_verdict(
-            facts->f, "contracting", facts->n_switches > 0 ? DALCS_CONDITIONAL : DALCS_YES,
+            facts->f, "contracting", facts->pairs.n_switches > 0 ? DALCS_CONDITIONAL : DALCS_YES,
             BG09 "theorem 3.2; " BG13 "proposition 7.3, (40) in the norm of P",
-            "yes: trajectories meet at least as exp(-t * %.4g/s)%s", lure->rate, held));
-        facts->f->verdict[facts->f->n_verdicts - 1].value = lure->rate;
-        DALCS_TRY(dalcs_lure_metric_witness(facts->f, &facts->lcs, &lure->rate_metric, true));
+            "yes: trajectories meet at least as exp(-t * %.4g/s)%s", lure->rate.value, held));
+        facts->f->verdict[facts->f->n_verdicts - 1].value = lure->rate.value;
+        DALCS_TRY(dalcs_lure_metric_witness(facts->f, &facts->lcs, &lure->rate.metric, true));
     } else {
         DALCS_TRY(dalcs_findings_verdict(
             facts->f, "contracting", facts->has_lcs ? DALCS_UNDECIDED : DALCS_NOT_CHECKED,
@@ -166,20 +166,20 @@ static enum dalcs_status judge_contraction(struct dalcs_facts *facts) {
             : lure->lossless == 0
                 ? "trajectories meet, at a rate that is not known: %s"
                 : "not shown: motions lose nothing in the norm of the P found; %s",
-            applies ? lure->rate_open : ""));
+            applies ? lure->rate.open : ""));
     }
-    bool unique = applies && lure->lossless == 0 && facts->n_switches == 0;
+    bool unique = applies && lure->lossless == 0 && facts->pairs.n_switches == 0;
     return dalcs_findings_verdict(
         facts->f, "periodic", unique ? DALCS_YES : DALCS_UNDECIDED,
         BG13 "(40); differences that dissipate nothing vanish",
         unique ? "one periodic steady state for periodic sources, which attracts all trajectories"
-        : facts->n_switches > 0 && applies && lure->lossless == 0
+        : facts->pairs.n_switches > 0 && applies && lure->lossless == 0
             ? "one periodic steady state while the switches rest; not shown when they move"
             : "no unique periodic steady state is shown");
 }
 
 enum dalcs_status dalcs_verdict_motion(struct dalcs_facts *facts) {
-    if (facts->has_lcs && facts->n_diodes == 0 && facts->n_switches == 0 &&
+    if (facts->has_lcs && facts->pairs.n_diodes == 0 && facts->pairs.n_switches == 0 &&
         facts->modes.is_checked) {
         return judge_linear(facts);
     }
@@ -216,7 +216,8 @@ const char *dalcs_facts_summary(const struct dalcs_facts *facts) {
         : v[1]->answer == DALCS_NO
             ? "For some starts and sources there is no trajectory, or more than one"
             : "Existence and uniqueness of a trajectory are not shown";
-    const char *given = facts->has_fed_back_switch ? " (for given positions of its switches)" : "";
+    const char *given =
+        facts->pairs.has_fed_back_switch ? " (for given positions of its switches)" : "";
     return first == NULL
                ? NULL
                : dalcs_arena_printf(arena, "%s%s; %s; %s; %s.%s%s%s", first, given,

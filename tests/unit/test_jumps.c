@@ -257,6 +257,28 @@ START_TEST(test_far_apart) {
 
 END_TEST
 
+/* A thyristor opens where its diode ends the current. In networks of impulses it is commanded: the resistors before it are not
+ * there, and its diode has another place, or none. */
+START_TEST(test_valve) {
+    build_good_network(
+        &t, "t\nV1 1 0 1\nR1 1 2 1\nR2 2 3 1\nR3 3 4 1\nC1 4 0 1u\nR4 4 5 1\nA1 5 6 7 scr\n"
+            "L1 6 8 1m\nR5 8 0 1\nVg 7 6 0\n.model scr thyristor\n.tran 1u 1m uic\n");
+    for (int kind = 0; kind < 2; kind++) {
+        struct dalcs_impulse_network impulse;
+        ck_assert_int_eq(
+            dalcs_impulse_network_build(&impulse, &t.circuit,
+                                        kind == 0 ? DALCS_IMPULSE_CHARGE : DALCS_IMPULSE_FLUX),
+            DALCS_OK);
+        for (int i = 0; i < impulse.circuit.n_devices; i++) {
+            ck_assert_int_lt(impulse.circuit.device[i].valve, 0);
+        }
+        dalcs_impulse_network_finish(&impulse);
+    }
+    text_network_finish(&t);
+}
+
+END_TEST
+
 RUN_TESTS("jumps", test_charge, test_resistance, test_source, test_breakdown, test_flux,
           test_switch, test_coupling, test_transformer, test_readers, test_not_covered,
-          test_far_apart)
+          test_far_apart, test_valve)
