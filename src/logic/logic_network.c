@@ -265,20 +265,27 @@ bool dalcs_logic_pass(struct dalcs_logic_network *l, enum dalcs_logic_rank most,
     return l->asked.n > 0;
 }
 
-void dalcs_logic_rest(struct dalcs_logic_network *l) {
+static bool has_memory(const struct dalcs_logic_gate *g) {
+    return g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g);
+}
+
+void dalcs_logic_rest(struct dalcs_logic_network *l, bool with_memory) {
     bool any = true;
     l->rests = true;
     for (int pass = 0; pass <= l->n && any; pass++) {
         any = false;
         for (int k = 0; k < l->n; k++) {
-            struct dalcs_logic_state state = decide(l, k);
+            const bool holds = !with_memory && has_memory(&l->gate[k]);
+            struct dalcs_logic_state state = holds ? l->state[k] : decide(l, k);
             any = any || state.q != l->state[k].q;
             state.seen = state.q;
             l->state[k] = state;
         }
     }
     for (int k = 0; k < l->n; k++) { /* what is still to come, for those with a delay */
-        l->state[k].q = dalcs_gate_has_delay(&l->gate[k]) ? decide(l, k).q : l->state[k].q;
+        const bool is_asked =
+            dalcs_gate_has_delay(&l->gate[k]) && (with_memory || !has_memory(&l->gate[k]));
+        l->state[k].q = is_asked ? decide(l, k).q : l->state[k].q;
     }
     l->rests = false;
     dalcs_logic_touch_all(l);

@@ -68,8 +68,9 @@ void dalcs_logic_touch_bit(struct dalcs_logic_network *network, int comparator, 
 void dalcs_logic_touch_all(struct dalcs_logic_network *network);
 
 /* The states at rest as the bits have them, one gate after the other, with no delay. What has no rest goes on from there:
- * where gates in a ring differ, one does, as of a ring oscillator that runs. */
-void dalcs_logic_rest(struct dalcs_logic_network *network);
+ * where gates in a ring differ, one does, as of a ring oscillator that runs. Without memory: what remembers stays, for what
+ * it reads may not be at rest yet. */
+void dalcs_logic_rest(struct dalcs_logic_network *network, bool with_memory);
 
 /* Do all show what their inputs make of them, and will? If not, moves says which do not. */
 bool dalcs_logic_is_at_rest(struct dalcs_logic_network *network);

@@ -60,13 +60,13 @@ bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l) {
     return l->circuit == NULL || dalcs_logic_is_at_rest(&l->network);
 }
 
-enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) {
+enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool with_memory, bool *changed) {
     *changed = false;
     if (l->circuit == NULL) {
         return DALCS_OK;
     }
     (void)read_bits(l, false);
-    dalcs_logic_rest(&l->network);
+    dalcs_logic_rest(&l->network, with_memory);
     l->now = 0.0;
     for (int k = 0; k < l->network.n; k++) {
         l->output[k].n_due = 0;

@@ -119,8 +119,10 @@ enum dalcs_status dalcs_logic_run_setup(struct dalcs_logic_run *l, struct dalcs_
                                         struct dalcs_radau *radau) DALCS_MUST_CHECK;
 void dalcs_logic_run_finish(struct dalcs_logic_run *l);
 
-/* Bits and outputs as the operating point that the engine has solved has them. *changed: it is to be solved again. */
-enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool *changed) DALCS_MUST_CHECK;
+/* Bits and outputs as the operating point that the engine has solved has them. *changed: it is to be solved again.
+ * Without memory: what remembers stays. */
+enum dalcs_status dalcs_logic_run_rest(struct dalcs_logic_run *l, bool with_memory,
+                                       bool *changed) DALCS_MUST_CHECK;
 
 /* Have all gates the outputs that the solved operating point demands? If not, network.moves lists the others. */
 bool dalcs_logic_run_is_at_rest(struct dalcs_logic_run *l);

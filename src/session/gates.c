@@ -49,9 +49,13 @@ enum dalcs_status dalcs_gates_operating_point(struct dalcs_euler *e, struct dalc
                                               bool sources_at_start) {
     const bool has_logic = logic != NULL && logic->circuit != NULL;
     bool changed = has_logic;
-    for (int round = 0; changed && round <= logic->network.n; round++) {
+    for (int round = 0; changed && round <= 2 * logic->network.n + 1; round++) {
+        const bool oscillates = round > logic->network.n; /* memory may end it */
         DALCS_TRY(dalcs_euler_operating_point(e, sources_at_start));
-        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
+        DALCS_TRY(dalcs_logic_run_rest(logic, oscillates, &changed));
+        if (!changed && !oscillates) { /* what is on its way to a latch has come */
+            DALCS_TRY(dalcs_logic_run_rest(logic, true, &changed));
+        }
     }
     return changed || !has_logic ? dalcs_euler_operating_point(e, sources_at_start) : DALCS_OK;
 }

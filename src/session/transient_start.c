@@ -63,7 +63,7 @@ static enum dalcs_status rest_held(struct dalcs_run *r, struct dalcs_euler *e,
                (size_t)logic->network.n * sizeof(*logic->network.state));
         dalcs_logic_run_finish(&at_rest);
         take_over_switches(e, held);
-        return dalcs_logic_run_rest(logic, &changed);
+        return dalcs_logic_run_rest(logic, true, &changed);
     }
     dalcs_logic_run_finish(&at_rest);
     return status;
@@ -131,9 +131,11 @@ enum dalcs_status dalcs_transient_start(struct dalcs_run *r, struct dalcs_euler 
     if (r->orbit != NULL) {
         return dalcs_steady_start(r->orbit, e, radau, logic);
     }
-    if (logic != NULL) {
+    if (logic !=
+        NULL) { /* nothing is solved yet: what latches read before an operating point is not there */
         bool changed;
-        DALCS_TRY(dalcs_logic_run_rest(logic, &changed));
+        DALCS_TRY(
+            dalcs_logic_run_rest(logic, c->analyses.transient.use_initial_conditions, &changed));
     }
     if (c->analyses.transient.use_initial_conditions) {
         remember(c, NULL);

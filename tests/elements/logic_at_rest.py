@@ -110,10 +110,26 @@ def words(checker, program):
     checker.check("no rest" not in done.stderr, done.stderr)
 
 
+def held(checker, program):
+    """A latch, a flip-flop and a counter keep what IC= says where nothing sets or clears them, though an inverter before
+    them would while its own input is not there yet; in both orders of the cards, and through 1 to 3 inverters."""
+    memories = (("{x} 0 0 0 0 0 q 0 SRFLOP", 0), ("0 {x} 0 0 0 0 q 0 SRFLOP IC=1", 1), ("0 0 0 {x} 0 0 q 0 DFLOP", 0),
+                ("0 0 0 0 {x} 0 q 0 DFLOP IC=1", 1), ("0 {x} 0 0 0 0 q 0 COUNTER IC=1", 1))
+    for (memory, wanted), n, is_first, card in itertools.product(memories, (1, 2, 3), (False, True), (".op", ".tran 1u 1m")):
+        cards = [f"v1 a 0 {n % 2}", "r1 a x0 1k", "r2 x0 0 9k"]
+        for k in range(n):
+            cards += [f"ai{k} x{k} 0 0 0 0 y{k + 1} 0 0 INV", f"rx{k} y{k + 1} x{k + 1} 1k", f"ry{k} x{k + 1} 0 9k"]
+        latch = ["am " + memory.format(x=f"x{n}"), "rq q 0 1k"]
+        what = f"{memory}, {n} inverters, {'first' if is_first else 'last'}, {card}"
+        done = run_cards(program, what, [*(latch + cards if is_first else cards + latch), card])
+        if runs(checker, done, what):
+            checker.close(done.column("v(q)")[-1], wanted, 1e-9, what)
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     checker = Checker("logic_at_rest")
-    for part in (points, sweeps, small_signals, starts, words):
+    for part in (points, sweeps, small_signals, starts, words, held):
         part(checker, program)
     return checker.finish()
 
