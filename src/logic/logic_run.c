@@ -164,16 +164,48 @@ static bool is_to_look_at(const struct dalcs_logic_run *l, int k) {
                                        : e->disturbed[k] == l->instant || may_jump(l, k));
 }
 
+/* Has a switch moved, in part->work.mode_first, that is no comparator? */
+static bool has_moved(const struct dalcs_logic_run *l, int k) {
+    const struct dalcs_radau_part *part = &l->radau->part[k];
+    const struct dalcs_positions *p = &part->component->positions;
+    bool has = false;
+    for (int i = 0; i < p->n && !has; i++) {
+        const bool is_on = dalcs_osnsp_is_on(p->osnsp, p->pair[i]);
+        has = dalcs_mode_has(part->work.mode_first, p->pair[i]) != is_on &&
+              !is_comparator(l, k, p->pair[i]);
+    }
+    return has;
+}
+
+/* Does one that remembers act on a part, and has still to decide? */
+static bool is_acted_on(const struct dalcs_logic_run *l, int k) {
+    const struct dalcs_logic_effect *e = &l->effect;
+    bool is = false;
+    for (int i = 0; i < 2 * l->network.asked.n && !is; i++) {
+        const struct dalcs_logic_gate *g = &l->network.gate[l->network.asked.gate[i / 2]];
+        const int stimulus = g->output[i % 2];
+        const bool remembers = g->kind == DALCS_GATE_LATCH || dalcs_gate_has_clock(g);
+        for (int n = stimulus >= 0 ? e->first[stimulus] : 0;
+             stimulus >= 0 && remembers && n < e->first[stimulus + 1] && !is; n++) {
+            is = e->part[n] == k;
+        }
+    }
+    return is;
+}
+
 /* Comparators of a part that waits to begin, where what they read has jumped since it was looked at: as they stand behind that,
  * before any state jumps with it. */
-static enum dalcs_status look_at(struct dalcs_logic_run *l, int k, bool is_answer) {
+static enum dalcs_status look_at(struct dalcs_logic_run *l, int k) {
     struct dalcs_radau_part *part = &l->radau->part[k];
     l->effect.looked[k] = l->instant;
     l->effect.disturbed[k] = 0;
     DALCS_TRY(dalcs_look_behind(l->radau, part, part->work.mode_first));
+    if (has_moved(l, k) && is_acted_on(l, k)) {
+        return DALCS_OK; /* another switch of the same leg may be to move with it: all of it is for the part to find */
+    }
     for (int i = 0; i < l->n_comparators; i++) {
         const struct dalcs_logic_place *place = &l->place[i];
-        if (place->part == k && !is_to_stay(l, i, is_answer)) {
+        if (place->part == k && !is_to_stay(l, i, true)) {
             dalcs_osnsp_command(&part->component->osnsp, place->pair,
                                 dalcs_mode_has(part->work.mode_first, place->pair));
         }
@@ -181,10 +213,10 @@ static enum dalcs_status look_at(struct dalcs_logic_run *l, int k, bool is_answe
     return DALCS_OK;
 }
 
-static enum dalcs_status look(struct dalcs_logic_run *l, bool is_answer) {
+static enum dalcs_status look(struct dalcs_logic_run *l) {
     for (int k = 0; l->radau != NULL && k < l->radau->n_parts; k++) {
         if (is_to_look_at(l, k)) {
-            DALCS_TRY(look_at(l, k, is_answer));
+            DALCS_TRY(look_at(l, k));
         }
     }
     return DALCS_OK;
@@ -192,14 +224,14 @@ static enum dalcs_status look(struct dalcs_logic_run *l, bool is_answer) {
 
 /* What has come from outside: events, commands, what is due, and, before anything else is decided, what comparators make of
  * sources that jump. */
-static enum dalcs_status begin_wave(struct dalcs_logic_run *l, double t) {
+static enum dalcs_status begin_wave(struct dalcs_logic_run *l, double t, bool is_first) {
     l->wave++;
     l->is_late = false;
     (void)read_bits(l, false);
     (void)dalcs_logic_release(l, t);
-    if (l->network.asked.n > 0) {
-        DALCS_TRY(look(l, false));
-        (void)read_bits(l, false);
+    if (is_first || l->network.asked.n > 0) {
+        DALCS_TRY(look(l));
+        (void)read_bits(l, true);
     }
     return DALCS_OK;
 }
@@ -211,7 +243,7 @@ static enum dalcs_status answer(struct dalcs_logic_run *l, double t, bool *diffe
     DALCS_TRY(show_changes(l, t, &acts));
     if (acts) {
         DALCS_TRY(disturb(l, t));
-        DALCS_TRY(look(l, true));
+        DALCS_TRY(look(l));
         *differs = read_bits(l, true);
     }
     return DALCS_OK;
@@ -238,13 +270,15 @@ static enum dalcs_status decide(struct dalcs_logic_run *l, double t) {
     const long most = 2L * (l->network.n + l->n_comparators + 1);
     long rounds = most;
     bool acts = true;
-    if (!l->is_open || l->now != t) {
+    bool is_first = !l->is_open || l->now != t;
+    if (is_first) {
         l->is_open = true;
         l->now = t;
         l->instant = l->network.instant = ++l->number;
     }
     while (acts || l->is_late) {
-        DALCS_TRY(begin_wave(l, t));
+        DALCS_TRY(begin_wave(l, t, is_first));
+        is_first = false;
         DALCS_TRY(pass_without_memory(l, t, most));
         if (!settle(l, t, most)) {
             return DALCS_NOT_CONVERGED;

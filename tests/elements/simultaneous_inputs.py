@@ -157,6 +157,23 @@ def ways(checker, program):
               [*stages, "A2 hx 0 p 0 0 0 q 0 DFLOP"], {"rises": 1, 10.9: 0, 11.1: 0, 20.9: 0, 21.1: 1})
 
 
+def legs(checker, program):
+    """Both switches of a leg move at one instant, whichever way they are told to: its fuse, a latch of the current, stays."""
+    leg = ["Vin in 0 24", "Rsh in a 10m", "S1 a sw {high} 0 swm", "S2 sw 0 {low} 0 swm", "R1 sw m 10", "C1 m 0 100u ic=12",
+           "E1 c 0 in a 100", "A9 c 0 0 0 0 0 q 0 SRFLOP ref=20", ".model swm sw(vt=0.5 ron=10m)"]
+    source, divider = "Vp p 0 PULSE(0 1 1u 0 0 5u 10u)", ["Ra p pa 1k", "Rb pa 0 9k"]
+    inverter, toggle = "A1 {node} 0 0 0 0 n 0 0 INV", ["Vt t 0 PULSE(0 1 1u 0 0 2u 5u)", "A1 n 0 t 0 0 n x 0 DFLOP", "Rx x 0 1k"]
+    for what, drive, high, low in (
+            ("an inverter", [inverter.format(node="p")], "p", "n"),
+            ("an inverter behind a divider", [*divider, inverter.format(node="pa")], "pa", "n"),
+            ("a formula", ["B1 n 0 V={1-v(p)}"], "p", "n"),
+            ("a flip-flop", toggle, "p", "n"),
+            ("a flip-flop, and a divider", [*divider, *toggle], "pa", "n"),
+            ("both outputs of a flip-flop", ["A1 n 0 p 0 0 n x 0 DFLOP", "Rx x 0 1k"], "x", "n")):
+        check(checker, program, f"a leg of {what}", [source, *drive, *[card.format(high=high, low=low) for card in leg], "Rn n 0 1k"],
+              {"rises": 0, 0.5: 0, 1.5: 0, 6.5: 0, 35.5: 0})
+
+
 def loops(checker, program):
     """A reset that its own output takes away, of counters of 3 and of 5 states by flip-flops that toggle; NORs that race."""
     ripple = [pulse("s", 1, 1), "A1 ab 0 s 0 c ab a 0 DFLOP", "A2 qb 0 ab 0 c qb q 0 DFLOP", "A3 a q 0 0 0 0 c 0 AND"]
@@ -174,7 +191,7 @@ def loops(checker, program):
 
 def main():
     checker = Checker("simultaneous_inputs")
-    for part in (latches, modulator, flip_flops, ways, loops):
+    for part in (latches, modulator, flip_flops, ways, legs, loops):
         part(checker, sys.argv[1])
     return checker.finish()
 
