@@ -425,7 +425,11 @@ MUTATIONS = {
         "? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
     "a state jumps against a diode": (
-        "integrator/segment.c", "!guessed && !asks &&", "!guessed &&", VIENNA),
+        "integrator/segment.c", "    dalcs_segment_renew(part);\n    if (dalcs_sliding_leave",
+        "    static long calls_;\n    for (int x = 0; calls_ < 1 && part->segment.t > 0.0 && x < part->component->system->n_x; x++) {\n"
+        "        calls_ += part->x[x] > 2000.0 && part->guards.n_crossed > 0 ? 1 : 0;\n"
+        "        part->x[x] *= calls_ == 1 && part->x[x] > 2000.0 ? 0.5 : 1.0;\n    }\n"
+        "    dalcs_segment_renew(part);\n    if (dalcs_sliding_leave", VIENNA),
     "an AND is an OR": (
         "logic/logic_network.c", "DALCS_GATE_AND   ? n_high == n", "DALCS_GATE_AND   ? n_high > 0", GATES),
     "a latch is reset by nothing": (
