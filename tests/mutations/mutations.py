@@ -205,6 +205,20 @@ r5 let 0 1k
 .tran 1u 400u uic
 """
 
+INTERRUPTED = """a share of what the coil's current does to the diode as the switch opens is in the switch's own control
+v1 in 0 5
+vt t 0 pulse(0 2 0 1u 0 0 1u)
+b1 c 0 v=1.6-v(t)+1e-6*(v(o)-24)
+l1 in s 60u ic=5
+s1 s 0 c 0 sw
+d1 s o
+c1 o e 375u ic=24
+r1 e 0 20m
+r2 o 0 240
+.model sw sw(ron=10m vt=0)
+.tran 10n 1u uic
+.end
+"""
 VIENNA = """a capacitor of 2.5 kV behind a diode, whose other end a switch takes to 0
 v1 s0 n SIN(0 3000 5939.416631497978)
 l1 s0 a0 0.0008709660510399749
@@ -430,6 +444,9 @@ MUTATIONS = {
         "        calls_ += part->x[x] > 2000.0 && part->guards.n_crossed > 0 ? 1 : 0;\n"
         "        part->x[x] *= calls_ == 1 && part->x[x] > 2000.0 ? 0.5 : 1.0;\n    }\n"
         "    dalcs_segment_renew(part);\n    if (dalcs_sliding_leave", VIENNA),
+    "the current of a coil jumps to 0 against a diode": (
+        "decide/projection.c", "    *jumps = *moved && !lengths->may_jump && is_jump(part);\n",
+        "    *jumps = *moved && !lengths->may_jump && is_jump(part) && false;\n", INTERRUPTED),
     "an AND is an OR": (
         "logic/logic_network.c", "DALCS_GATE_AND   ? n_high == n", "DALCS_GATE_AND   ? n_high > 0", GATES),
     "a latch is reset by nothing": (
