@@ -198,7 +198,7 @@ DRIVEN = [
 
 def integrals(case):
     for name, netlist, rises in DRIFTS:
-        case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "a run comes to no periodic steady state: without end", rises)
+        case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "there is no periodic steady state from this start: without end", rises)
     for name, netlist in DRIVEN:
         case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "no periodic steady state was found", "in the last one")
     done, report = case.run("* controlled\n" + CLOCK + BUCK + "Vr r 0 1\nB1 u 0 V=v(r)-v(j)-0.5*v(i)+0*v(out)\n" +
