@@ -357,6 +357,18 @@ vg g y PULSE(0 1 10u 0 0 5u 1)
 .tran 1u 5m uic
 """
 
+AMMETERS = """two resistors far below others that share a current
+v1 in 0 SIN(0 5 1k)
+r1 in a 2
+r2 a b 1n
+r3 a b 2n
+r4 b 0 1Meg
+r5 b c 1
+c1 c 0 10u
+.save i(r2) i(r3)
+.tran 10u 2m uic
+"""
+
 MUTATIONS = {
     "a thyristor does not open": (
         "dalcs/assemble.c", "            pair->has_valve = true;\n", "            pair->has_valve = false;\n", THYRISTOR),
@@ -393,6 +405,9 @@ MUTATIONS = {
         HELD),
     "a resistor is stamped too large": (
         "dalcs/stamp_device.c", "1.0 / d->value", "1.0 / (1.00001 * d->value)", FILTER),
+    "a resistor of 1 nohm is stamped too large": (
+        "dalcs/stamp_device.c", "current_column[device],\n                           -d->value);",
+        "current_column[device],\n-(d->value < 1.5e-9 ? 1.001 : 1.0) * d->value);", AMMETERS),
     "a state is nudged by 1e-6 in one segment of 20": (
         "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
         "    part->segment.in[s->n_x] = 1.0;\n" + once(15, "", "part->segment.in[0] *= 1.0 + 1e-6;"), SHORT),
@@ -461,7 +476,7 @@ MUTATIONS = {
     "a sample forgets what it let through": (
         "logic/logic_network.c", "(state->q && !tracks && !l->rests)", "false", GATES),
     "a delay is a tenth longer": (
-        "logic/logic_run.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
+        "logic/logic_queue.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
     "a JK flip-flop turns over too often": (
         "logic/logic_network.c", "(q ? !reset : data)", "(q ? !reset && !data : data)", GATES),
     "one output of many shows the other level": (
