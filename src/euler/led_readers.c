@@ -195,5 +195,23 @@ enum dalcs_status dalcs_positions_compare_readers(struct dalcs_positions *p, dou
     memcpy(o->mode, p->present, (size_t)o->n_words * sizeof(*o->mode));
     const enum dalcs_status status = dalcs_osnsp_solve(o, sigma, u, y);
     o->latches.are_read = differs;
+    o->latches.are_compared = true;
     return status;
+}
+
+enum dalcs_status dalcs_positions_find_held(struct dalcs_positions *p, double sigma,
+                                            const double *u, double *y, const char **held) {
+    const struct dalcs_osnsp *o = p->osnsp;
+    *held = NULL;
+    if (!p->settled || !dalcs_osnsp_has_leading(o)) {
+        return DALCS_OK;
+    }
+    if (!dalcs_osnsp_has_led(o) && !o->latches.are_compared) {
+        DALCS_TRY(dalcs_positions_compare_readers(p, sigma, u, y));
+    }
+    for (int k = 0; k < o->latches.n && dalcs_osnsp_has_led(o) && *held == NULL; k++) {
+        *held = dalcs_latch_leads(o->latches.role[k]) ? o->system->pair[o->latches.jump[k]].element
+                                                      : NULL;
+    }
+    return DALCS_OK;
 }

@@ -83,6 +83,12 @@ enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma,
 enum dalcs_status dalcs_positions_compare_readers(struct dalcs_positions *p, double sigma,
                                                   const double *u, double *y) DALCS_MUST_CHECK;
 
+/* Behind dalcs_positions_solve() of a step, for who takes its answer as it is: *held is a formula between its sides that what reads it
+ * should follow from side to side; NULL: there is none. */
+enum dalcs_status dalcs_positions_find_held(struct dalcs_positions *p, double sigma,
+                                            const double *u, double *y,
+                                            const char **held) DALCS_MUST_CHECK;
+
 /* Behind it, where jumps of formulas are led (osnsp.h): the answer on one side of those that lead, if it has them there; else
  * on both, as of switches that alternate. */
 enum dalcs_status dalcs_positions_part_led(struct dalcs_positions *p, double sigma, const double *u,

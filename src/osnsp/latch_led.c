@@ -108,7 +108,7 @@ enum dalcs_status dalcs_latch_led_find(struct dalcs_osnsp *p, double sigma, cons
     struct additions both = {.whole = *of, .half = *of};
     memset(p->latches.role, 0, (size_t)p->latches.n * sizeof(*p->latches.role));
     p->latches.n_led = p->latches.n_leading = 0;
-    p->latches.are_read = false;
+    p->latches.are_read = p->latches.are_compared = false;
     if (are_alone(p, of) || !(sigma > 0.0)) {
         return DALCS_OK;
     }

@@ -167,11 +167,12 @@ struct dalcs_osnsp_latches {
     uint64_t *met;      /* [n_words] one of their modes */
     bool
         is_known; /* the last mode in which none of those between their sides holds itself is in `rests` */
-    uint64_t *rests; /* [n_words] */
-    double sigma;    /* and its step */
-    int n_led;       /* of them in `rests`: they are led (latch_led.c) */
-    int n_leading;   /* ... and lead, whether others are led or not */
-    bool are_read;   /* what reads these stands otherwise on their two sides (led_readers.c) */
+    uint64_t *rests;   /* [n_words] */
+    double sigma;      /* and its step */
+    int n_led;         /* of them in `rests`: they are led (latch_led.c) */
+    int n_leading;     /* ... and lead, whether others are led or not */
+    bool are_compared; /* that is known */
+    bool are_read;     /* what reads these stands otherwise on their two sides (led_readers.c) */
 
     enum dalcs_latch_role {
         DALCS_LATCH_FREE,

@@ -71,12 +71,22 @@ def check_passing(checker, program):
         checker.check(worst <= 1e-6, f"passing: v(y) off by {worst:.2e}")
 
 
+def check_euler(checker, program):
+    """With the method euler nothing slides: a warning says what the values are not."""
+    for reader, is_told in ((READERS["a comparator"][0], True), ("b2 y 0 v={v(q)<0.5 ? 1 : 0}\n", True), (READERS["a sum"][0], False)):
+        netlist = f"euler\n{SLIDES}{reader}rl y 0 10k\n.tran 0.5u 60u uic\n.end\n"
+        result = dalcs_program.run(program, netlist, method="euler", options=[])
+        checker.check(result.status == 0, f"euler: {result.stderr}")
+        checker.check(("'b1' stands between its sides" in result.stderr) == is_told, f"euler: {reader}{result.stderr}")
+
+
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     checker = dalcs_program.Checker("readers of slides")
     for name in dalcs_program.some_of(list(READERS)):
         check_reader(checker, program, name)
     check_passing(checker, program)
+    check_euler(checker, program)
     return checker.finish()
 
 
