@@ -192,6 +192,13 @@ enum dalcs_status dalcs_component_solve(struct dalcs_component *c, double sigma,
     if (!c->positions.settled && c->commands.n_delayed++ == 0) {
         c->commands.restless = dalcs_positions_restless(&c->positions, y);
     }
+    const char *held = NULL;
+    if (sigma > 0.0) {
+        DALCS_TRY(dalcs_positions_find_held(&c->positions, sigma, u, y, &held));
+    }
+    if (held != NULL && c->commands.n_held++ == 0) {
+        c->commands.held = held;
+    }
     return DALCS_OK;
 }
 

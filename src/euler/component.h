@@ -39,6 +39,9 @@ struct dalcs_component {
         long n_delayed;       /* whose control did not settle within a step */
         const char *restless; /* the first of them at an operating point or in a step of Euler */
         long n_slid;          /* steps in which one slides (sliding.h) */
+        const char *
+            held; /* a formula that slides where others should with it, and do not: in steps of Euler */
+        long n_held; /* such steps */
     } commands;
 
     struct { /* for messages */

@@ -15,17 +15,21 @@ static double argument(const struct dalcs_osnsp *p, int d, const double *y) {
 static bool all_ask_for(const struct dalcs_osnsp *p, const double *y, bool is_above) {
     bool all = true;
     for (int k = 0; k < p->latches.n; k++) {
-        const bool leads = p->latches.role[k] == DALCS_LATCH_LEADS;
-        all = all && (!leads || (argument(p, p->latches.jump[k], y) > 0.0) == is_above);
+        const enum dalcs_latch_role role = p->latches.role[k];
+        const bool is_asked = argument(p, p->latches.jump[k], y) > 0.0;
+        all = all &&
+              (!dalcs_latch_leads(role) || is_asked == (is_above == (role == DALCS_LATCH_LEADS)));
     }
     return all;
 }
 
 static void put_leading(struct dalcs_osnsp *p, bool is_above) {
     for (int k = 0; k < p->latches.n; k++) {
-        if (p->latches.role[k] == DALCS_LATCH_LEADS) {
-            dalcs_osnsp_command(p, p->latches.jump[k], is_above);
-            dalcs_osnsp_command(p, p->latches.jump[k] + 1, is_above);
+        const enum dalcs_latch_role role = p->latches.role[k];
+        if (dalcs_latch_leads(role)) {
+            const bool is_on = is_above == (role == DALCS_LATCH_LEADS);
+            dalcs_osnsp_command(p, p->latches.jump[k], is_on);
+            dalcs_osnsp_command(p, p->latches.jump[k] + 1, is_on);
         }
     }
 }
@@ -49,8 +53,14 @@ enum dalcs_status dalcs_positions_part_led(struct dalcs_positions *p, double sig
     struct dalcs_osnsp *o = p->osnsp;
     const size_t bytes = (size_t)o->n_words * sizeof(*o->mode);
     bool found;
-    if (!p->settled || !dalcs_osnsp_has_led(o)) {
+    if (!p->settled || !dalcs_osnsp_has_leading(o)) {
         return DALCS_OK;
+    }
+    if (!dalcs_osnsp_has_led(o)) {
+        DALCS_TRY(dalcs_positions_compare_readers(p, sigma, u, y));
+        if (!dalcs_osnsp_has_led(o)) {
+            return DALCS_OK;
+        }
     }
     memcpy(p->present, o->mode, bytes);
     DALCS_TRY(answer(p, sigma, u, false, p->other_y, &found));

@@ -43,10 +43,12 @@ struct dalcs_positions {
         int *group;     /* [n + n_jumps] of those that slide, -1: not of them */
         bool *is_other; /* [n + n_jumps] of first ones that do not: the side that they stay on */
         double *y, *w;  /* [DALCS_MOST_SIDES][n_columns], [][n_pairs] */
+        double *off;    /* [2][n_columns + n_pairs] led_readers.c */
         double *w_of_y; /* [n_pairs] of the answer on one side of all */
         uint64_t *mode; /* [DALCS_MOST_SIDES][n_words] */
         uint64_t *conducted; /* [n_words] on some side */
         bool *leading;       /* [n + n_jumps] */
+        int *standing;       /* [n + n_jumps] off on all sides, on some, on all */
         bool have_changed;   /* others lead than in the mean before */
         bool remember;       /* formulas that turn hold themselves: there is no mean */
         double sigma;        /* of the step */
@@ -58,9 +60,10 @@ struct dalcs_positions {
     } tried;
 };
 
-/* May something stand between two positions: a switch, or a jump that another one leads? */
+/* May something stand between two positions: a switch, or a jump that leads or is led, or that diodes and smooth formulas read? */
 static inline bool dalcs_positions_may_slide(const struct dalcs_positions *p) {
-    return p->n > 0 || p->n_jumps > 1;
+    return p->n > 0 || p->n_jumps > 1 ||
+           (p->n_jumps == 1 && (p->osnsp->system->n_pairs > 2 || p->osnsp->smooth.newton != NULL));
 }
 
 /* Those of a system; memory of `arena`, but for what is rarely needed. */
@@ -74,6 +77,17 @@ void dalcs_positions_finish(struct dalcs_positions *p);
  * positions without an answer; p->osnsp->mode and its witness are such ones. */
 enum dalcs_status dalcs_positions_solve(struct dalcs_positions *p, double sigma, const double *u,
                                         double *y) DALCS_MUST_CHECK;
+
+/* Behind dalcs_positions_solve() with p->settled, where jumps between their sides lead none: does what reads them stand otherwise on
+ * their sides than between them? Into p->osnsp->latches.are_read. y: the answer, which stays. */
+enum dalcs_status dalcs_positions_compare_readers(struct dalcs_positions *p, double sigma,
+                                                  const double *u, double *y) DALCS_MUST_CHECK;
+
+/* Behind dalcs_positions_solve() of a step, for who takes its answer as it is: *held is a formula between its sides that what reads it
+ * should follow from side to side; NULL: there is none. */
+enum dalcs_status dalcs_positions_find_held(struct dalcs_positions *p, double sigma,
+                                            const double *u, double *y,
+                                            const char **held) DALCS_MUST_CHECK;
 
 /* Behind it, where jumps of formulas are led (osnsp.h): the answer on one side of those that lead, if it has them there; else
  * on both, as of switches that alternate. */

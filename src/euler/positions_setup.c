@@ -13,15 +13,19 @@ static bool allocate_sides(struct dalcs_positions *p, struct dalcs_arena *arena)
     sides->is_other = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
     sides->y = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)dalcs_system_n_columns(s),
                                  sizeof(double));
+    sides->off = dalcs_arena_alloc(
+        arena, 2 * ((size_t)dalcs_system_n_columns(s) + (size_t)s->n_pairs), sizeof(double));
     sides->w_of_y = dalcs_arena_alloc(arena, (size_t)s->n_pairs, sizeof(double));
     sides->w = dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)s->n_pairs, sizeof(double));
     sides->mode =
         dalcs_arena_alloc(arena, DALCS_MOST_SIDES * (size_t)p->osnsp->n_words, sizeof(uint64_t));
     sides->conducted = dalcs_arena_alloc(arena, (size_t)p->osnsp->n_words, sizeof(uint64_t));
+    sides->standing = dalcs_arena_alloc(arena, n_turning, sizeof(int));
     sides->leading = dalcs_arena_alloc(arena, n_turning, sizeof(bool));
     return sides->kin != NULL && sides->is_other != NULL && sides->group != NULL &&
-           sides->y != NULL && sides->w != NULL && sides->w_of_y != NULL && sides->mode != NULL &&
-           sides->conducted != NULL && sides->leading != NULL;
+           sides->y != NULL && sides->w != NULL && sides->w_of_y != NULL && sides->off != NULL &&
+           sides->mode != NULL && sides->conducted != NULL && sides->leading != NULL &&
+           sides->standing != NULL;
 }
 
 enum dalcs_status dalcs_positions_setup(struct dalcs_positions *p, struct dalcs_osnsp *osnsp,

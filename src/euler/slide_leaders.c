@@ -137,7 +137,7 @@ static void note_led(struct dalcs_positions *p) {
     for (int i = 0; i < dalcs_turning_n(p); i++) {
         if (dalcs_turning_turns(p, i) && !p->is_compared[i]) {
             const enum dalcs_latch_role *role = p->osnsp->latches.role;
-            p->follows[i] = i < p->n || role[i - p->n] != DALCS_LATCH_LEADS;
+            p->follows[i] = i < p->n || !dalcs_latch_leads(role[i - p->n]);
             p->is_compared[i] = true;
         }
     }

@@ -170,13 +170,25 @@ static double common_weight(const struct dalcs_positions *p, const double *y, do
     return weight;
 }
 
-/* One weight is of all that lead; of several, those that slide are in groups. */
+/* 0: off on all sides, 2: on on all sides, 1: it turns. */
+static int find_standing(const struct dalcs_positions *p, int i) {
+    const int d = dalcs_turning_pair(p, i);
+    const bool stays_on = dalcs_osnsp_is_on(p->osnsp, d) && dalcs_mode_has(p->other, d);
+    return stays_on ? 2 : dalcs_mode_has(p->sides.conducted, d) ? 1 : 0;
+}
+
+/* One weight is of all that lead; of several, those that slide are in groups. Where what follows comparators begins or ends to
+ * turn, its mean jumps, and no polynomial goes through that. */
 static void note_leading(struct dalcs_positions *p, bool has_one_weight) {
     p->sides.have_changed = false;
     for (int i = 0; i < dalcs_turning_n(p); i++) {
         const bool leads = has_one_weight ? dalcs_turning_leads(p, i) : p->sides.group[i] >= 0;
         p->sides.have_changed = p->sides.have_changed || leads != p->sides.leading[i];
         p->sides.leading[i] = leads;
+        const int standing = find_standing(p, i);
+        const bool has_turned = p->are_led && !leads && standing != p->sides.standing[i];
+        p->sides.have_changed = p->sides.have_changed || has_turned;
+        p->sides.standing[i] = standing;
     }
 }
 

@@ -62,32 +62,54 @@ static bool leads(const struct additions *of, int i) {
     return is_moved && !is_moved_at_once;
 }
 
+/* Its output does nothing to its own argument, so it is at its threshold since another one is that reads the same: does it stand
+ * below where that one stands above? */
+static bool leads_against(const struct additions *of, int i) {
+    bool is_against = false;
+    for (int k = 0; k < of->whole.n && of->whole.adds[i][i] == 0.0; k++) {
+        is_against = is_against || of->whole.adds[i][k] * of->whole.adds[k][k] < 0.0;
+    }
+    return is_against;
+}
+
 /* What one that leads moves at once is led, and so is what that moves. */
 static void note_roles(struct dalcs_osnsp *p, const struct additions *of) {
     enum dalcs_latch_role role[DALCS_MOST_LATCHES] = {DALCS_LATCH_FREE};
 
+    for (int i = 0; i < of->whole.n; i++) {
+        role[i] = !leads(of, i)          ? DALCS_LATCH_FREE
+                  : leads_against(of, i) ? DALCS_LATCH_LEADS_AGAINST
+                                         : DALCS_LATCH_LEADS;
+        p->latches.are_read =
+            p->latches.are_read || (role[i] != DALCS_LATCH_FREE && of->whole.adds[i][i] == 0.0);
+    }
     for (int round = 0; round < of->whole.n; round++) {
         for (int i = 0; i < of->whole.n; i++) {
             for (int k = 0; k < of->whole.n; k++) {
-                if (adds_at_once(of, i, k) && (role[k] == DALCS_LATCH_LED || leads(of, k))) {
-                    role[i] = DALCS_LATCH_LED;
-                    role[k] = role[k] == DALCS_LATCH_LED ? DALCS_LATCH_LED : DALCS_LATCH_LEADS;
-                }
+                role[i] = adds_at_once(of, i, k) && role[k] != DALCS_LATCH_FREE ? DALCS_LATCH_LED
+                                                                                : role[i];
             }
         }
     }
     for (int i = 0; i < of->whole.n; i++) {
         *role_of(p, of->whole.of[i]) = role[i];
         p->latches.n_led += role[i] == DALCS_LATCH_LED ? 1 : 0;
+        p->latches.n_leading += dalcs_latch_leads(role[i]) ? 1 : 0;
     }
+}
+
+/* Is there nothing in the circuit beside these jumps that could stand on sides? */
+static bool are_alone(const struct dalcs_osnsp *p, const struct dalcs_latch_loops *of) {
+    return of->n < 2 && p->system->n_pairs == 2 * of->n && p->smooth.newton == NULL;
 }
 
 enum dalcs_status dalcs_latch_led_find(struct dalcs_osnsp *p, double sigma, const double *u,
                                        const struct dalcs_latch_loops *of) {
     struct additions both = {.whole = *of, .half = *of};
     memset(p->latches.role, 0, (size_t)p->latches.n * sizeof(*p->latches.role));
-    p->latches.n_led = 0;
-    if (of->n < 2 || !(sigma > 0.0)) {
+    p->latches.n_led = p->latches.n_leading = 0;
+    p->latches.are_read = p->latches.are_compared = false;
+    if (are_alone(p, of) || !(sigma > 0.0)) {
         return DALCS_OK;
     }
     DALCS_TRY(find_additions(p, 2.0 * sigma, u, &both.half));
@@ -101,10 +123,18 @@ enum dalcs_status dalcs_latch_led_find(struct dalcs_osnsp *p, double sigma, cons
     return DALCS_OK;
 }
 
-bool dalcs_osnsp_has_led(const struct dalcs_osnsp *p) {
+/* Is what is known of latches of this mode? */
+static bool is_of_mode(const struct dalcs_osnsp *p) {
     const struct dalcs_osnsp_latches *l = &p->latches;
-    return l->n_led > 0 && l->is_known &&
-           memcmp(l->rests, p->mode, (size_t)p->n_words * sizeof(*p->mode)) == 0;
+    return l->is_known && memcmp(l->rests, p->mode, (size_t)p->n_words * sizeof(*p->mode)) == 0;
+}
+
+bool dalcs_osnsp_has_leading(const struct dalcs_osnsp *p) {
+    return p->latches.n_leading > 0 && is_of_mode(p);
+}
+
+bool dalcs_osnsp_has_led(const struct dalcs_osnsp *p) {
+    return (p->latches.n_led > 0 || p->latches.are_read) && is_of_mode(p);
 }
 
 static void command(struct dalcs_osnsp *p, bool is_free) {

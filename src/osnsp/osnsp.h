@@ -167,13 +167,17 @@ struct dalcs_osnsp_latches {
     uint64_t *met;      /* [n_words] one of their modes */
     bool
         is_known; /* the last mode in which none of those between their sides holds itself is in `rests` */
-    uint64_t *rests; /* [n_words] */
-    double sigma;    /* and its step */
-    int n_led;       /* of them in `rests`: they are led (latch_led.c) */
+    uint64_t *rests;   /* [n_words] */
+    double sigma;      /* and its step */
+    int n_led;         /* of them in `rests`: they are led (latch_led.c) */
+    int n_leading;     /* ... and lead, whether others are led or not */
+    bool are_compared; /* that is known */
+    bool are_read;     /* what reads these stands otherwise on their two sides (led_readers.c) */
 
     enum dalcs_latch_role {
         DALCS_LATCH_FREE,
         DALCS_LATCH_LEADS,
+        DALCS_LATCH_LEADS_AGAINST, /* it is above where those that lead are below */
         DALCS_LATCH_LED
     } *
         role; /* [n] there */
@@ -249,6 +253,13 @@ enum dalcs_status dalcs_osnsp_answer(struct dalcs_osnsp *p, const double *u,
 /* Behind dalcs_osnsp_solve() at sigma: are jumps between their sides led, so that the answer is none of comparators that have a
  * small delay? */
 bool dalcs_osnsp_has_led(const struct dalcs_osnsp *p);
+
+/* Are there jumps between their sides that others might follow? */
+bool dalcs_osnsp_has_leading(const struct dalcs_osnsp *p);
+
+static inline bool dalcs_latch_leads(enum dalcs_latch_role role) {
+    return role == DALCS_LATCH_LEADS || role == DALCS_LATCH_LEADS_AGAINST;
+}
 
 /* Then: the answer where those that lead are on the sides that p->mode has them on, and those that are led go where it has them.
  * *found: there is one. */

@@ -16,7 +16,22 @@ static void warn_of_columns(struct dalcs_run *r) {
     }
 }
 
+/* Where no slide is sought, as with the method euler. */
+static void warn_of_held(struct dalcs_run *r, const struct dalcs_component *c) {
+    if (c->commands.n_held == 0 || c->commands.n_slid > 0) {
+        return;
+    }
+    dalcs_diag_add(&r->s->diag, DALCS_WARNING, NULL,
+                   "the method auto has the means of both sides; a hysteresis in its formula makes "
+                   "it turn",
+                   "in %ld step%s '%s' stands between its sides, and what reads it does not do so "
+                   "in the mean: with a small delay they would go from side to side together, and "
+                   "have other means than these values",
+                   c->commands.n_held, c->commands.n_held == 1 ? "" : "s", c->commands.held);
+}
+
 void dalcs_run_warn_of_switches(struct dalcs_run *r, const struct dalcs_component *c, long steps) {
+    warn_of_held(r, c);
     if (c->commands.n_slid > 0) {
         const bool has_switches = c->positions.n > 0;
         dalcs_diag_add(
