@@ -157,7 +157,7 @@ static bool asks_otherwise(struct dalcs_audit *audit, const struct dalcs_audit_s
     } else if (can_look && audit->part[stretch->part].has.smooth) {
         look_at_formulas(audit, stretch);
     }
-    return audit_watch_asks(audit, stretch, can_look);
+    return audit_watch_asks(audit, stretch);
 }
 
 bool dalcs_audit_passes_over(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,

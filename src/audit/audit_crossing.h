@@ -60,6 +60,11 @@ void audit_check_directions(struct dalcs_audit *audit, const struct audit_part *
                             const struct dalcs_audit_state *before,
                             const struct dalcs_audit_state *after);
 
+/* fluxes.c: fluxes of coils, and the way that diodes let them pass. */
+void audit_check_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
+                        const struct dalcs_audit_state *before,
+                        const struct dalcs_audit_state *after);
+
 /* corners.c: from here on, until audit->crossing.corners.later is NULL, corners are as wide as they are known. */
 void audit_widen_corners(struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *after);

@@ -74,34 +74,6 @@ bool audit_passes_charge(const struct dalcs_audit *audit, const struct audit_par
     return audit_ways_of_charge(audit, part, before, after, device) != 0;
 }
 
-/* Does a finite voltage stand across it, whatever happens? */
-static bool bounds_voltage(const struct dalcs_audit *audit, const struct audit_part *part,
-                           const struct dalcs_audit_state *before,
-                           const struct dalcs_audit_state *after, int device) {
-    const struct dalcs_device *d = &audit->circuit->device[device];
-    bool may_be[2];
-    switch (d->kind) {
-    case DALCS_CAPACITOR:
-    case DALCS_VSOURCE:
-        return true;
-    case DALCS_RESISTOR:
-        return !audit_has_impulse(audit, d);
-    case DALCS_SWITCH:
-        audit_find_positions(audit, part, before, after, device, may_be);
-        return !audit_has_impulse(audit, d) &&
-               (isfinite(audit->circuit->models.of_switch[d->model].roff) || !may_be[false]);
-    case DALCS_DIODE: {
-        const struct dalcs_diode_model *m = &audit->circuit->models.of_diode[d->model];
-        return !audit_has_impulse(audit, d) &&
-               (isfinite(m->roff) || isfinite(m->vrev) ||
-                after->i[device] > part->tolerance * audit_amperes(audit, part, device) +
-                                       audit_amperes_off_corner(audit, after, device));
-    }
-    default: /* I, E, F, G, H, formulas: whatever their controls have */
-        return false;
-    }
-}
-
 void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_part *part,
                          const struct dalcs_audit_state *before,
                          const struct dalcs_audit_state *after, audit_joins *join) {
@@ -117,8 +89,6 @@ void audit_find_clusters(const struct dalcs_audit *audit, const struct audit_par
         }
     }
 }
-
-/* ---- Charge -------------------------------------------------------------------------------------- */
 
 double audit_charge_gained(const struct dalcs_audit *audit, const struct audit_part *part,
                            const struct dalcs_audit_state *after, int device, double *scale) {
@@ -220,85 +190,6 @@ static void check_charge(struct dalcs_audit *audit, const struct audit_part *par
     }
 }
 
-/* ---- Flux ---------------------------------------------------------------------------------------- */
-
-/* The root of a node, and the flux between the two: offset[n] is that of n over its parent. */
-static int find_root(const struct dalcs_audit *audit, int node, double *flux) {
-    *flux = 0.0;
-    while (audit->crossing.cluster[node] != node) {
-        *flux += audit->crossing.offset[node];
-        node = audit->crossing.cluster[node];
-    }
-    return node;
-}
-
-static void sum_fluxes(struct dalcs_audit *audit, const struct audit_part *part,
-                       const struct dalcs_audit_state *after) {
-    for (int k = 0; k < part->n_devices; k++) {
-        const int device = part->device[k];
-        const struct dalcs_device *d = &audit->circuit->device[device];
-        audit->sums.flux[device] =
-            d->kind == DALCS_INDUCTOR
-                ? d->value * (after->i[device] - audit->crossing.stored[device])
-                : 0.0;
-    }
-    for (int k = 0; k < part->n_couplings; k++) {
-        const struct dalcs_coupling *m = &audit->circuit->coupling[part->coupling[k]];
-        const int a = m->inductor[0];
-        const int b = m->inductor[1];
-        const double mutual =
-            m->k * sqrt(audit->circuit->device[a].value * audit->circuit->device[b].value);
-        audit->sums.flux[a] += mutual * (after->i[b] - audit->crossing.stored[b]);
-        audit->sums.flux[b] += mutual * (after->i[a] - audit->crossing.stored[a]);
-    }
-}
-
-/* What passes while times cannot be told apart: a coil that is cut off may have 1e9 V for 1e-14 s. */
-static double flux_unresolved(const struct dalcs_audit *audit,
-                              const struct dalcs_audit_state *before,
-                              const struct dalcs_audit_state *after, const struct dalcs_device *d) {
-    return fmax(fabs(audit_voltage(before, d)), fabs(audit_voltage(after, d))) *
-           audit->options.resolution;
-}
-
-static void check_flux(struct dalcs_audit *audit, const struct audit_part *part,
-                       const struct dalcs_audit_state *before,
-                       const struct dalcs_audit_state *after) {
-    audit_find_clusters(audit, part, before, after, bounds_voltage);
-    sum_fluxes(audit, part, after);
-    for (int k = 0; k < part->n_nodes; k++) {
-        const int node = part->node[k];
-        audit->crossing.cluster[node] = dalcs_union_find(audit->crossing.cluster, node);
-        audit->crossing.offset[node] = 0.0;
-        audit->sums.scale[node] = audit->sums.rounding[node] = 0.0; /* here of a root's tree */
-    }
-    audit->sums.scale[0] = audit->sums.rounding[0] = 0.0;
-    for (int k = 0; k < part->n_devices; k++) {
-        const int device = part->device[k];
-        const struct dalcs_device *d = &audit->circuit->device[device];
-        if (d->kind != DALCS_INDUCTOR) {
-            continue;
-        }
-        double flux[2];
-        const int a = find_root(audit, audit->net.node_of[d->node[0]], &flux[0]);
-        const int b = find_root(audit, audit->net.node_of[d->node[1]], &flux[1]);
-        const double over = audit->sums.flux[device] - (flux[0] - flux[1]);
-        const double scale = audit_flux_scale(audit, part, device);
-        const double rounding = AUDIT_ROUNDING * scale + flux_unresolved(audit, before, after, d);
-        if (a != b) {
-            audit->crossing.cluster[a] = b;
-            audit->crossing.offset[a] = over;
-            audit->sums.scale[b] += audit->sums.scale[a] + scale;
-            audit->sums.rounding[b] += audit->sums.rounding[a] + rounding;
-        } else {
-            audit_find_flux(audit, part, device, fabs(over) - rounding - audit->sums.rounding[a],
-                            scale + audit->sums.scale[a], after->t);
-        }
-    }
-}
-
-/* ---- Both --------------------------------------------------------------------------------------- */
-
 static void check_both(struct dalcs_audit *audit, const struct audit_part *part,
                        const struct dalcs_audit_state *before,
                        const struct dalcs_audit_state *after) {
@@ -307,7 +198,7 @@ static void check_both(struct dalcs_audit *audit, const struct audit_part *part,
     if (before != after) {
         audit_check_directions(audit, part, before, after);
     }
-    check_flux(audit, part, before, after);
+    audit_check_fluxes(audit, part, before, after);
     audit_forget_impulses(audit, part);
 }
 

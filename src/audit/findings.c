@@ -78,12 +78,14 @@ void audit_find_flux(struct dalcs_audit *audit, const struct audit_part *part, i
     note(&audit->flux[device], defect, scale, time);
 }
 
-/* Of what a coil's flux jumped by where it should not; its scale is that of the largest current so far. */
+/* Of what a coil's flux jumped by where it should not, and what passed a diode forward; the scale of a coil is that of the
+ * largest current so far. */
 static struct dalcs_audit_finding finding_of_flux(const struct dalcs_audit *audit, int device) {
     const struct audit_worst *worst = &audit->flux[device];
     const struct audit_part *part = &audit->part[audit->worst_of[DALCS_AUDIT_BRANCH][device].part];
-    const double scale =
-        worst->defect > 0.0 ? fmax(worst->scale, audit_flux_scale(audit, part, device)) : 0.0;
+    const bool is_coil = audit->circuit->device[device].kind == DALCS_INDUCTOR;
+    const double own = worst->defect > 0.0 && is_coil ? audit_flux_scale(audit, part, device) : 0.0;
+    const double scale = fmax(worst->scale, own);
     return (struct dalcs_audit_finding){audit_ratio(worst->defect, scale), worst->time};
 }
 

@@ -231,6 +231,36 @@ double audit_current_rounding(const struct dalcs_audit *audit, const struct dalc
     return AUDIT_ROUNDING * (of_voltages + fabs(audit_current(audit, s, device)));
 }
 
+struct audit_number audit_drop(const struct dalcs_audit *audit, const struct audit_part *part,
+                               int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    const double *v = audit->scale.v;
+    const double at_nodes = v[d->node[0]] + v[d->node[1]];
+    const double ohms = fabs(d->value);
+    if (ohms == 0.0) { /* any current */
+        return (struct audit_number){audit_volts(audit, part, d->node[0], d->node[1]),
+                                     2.0 * audit->sums.volts + audit->options.vntol};
+    }
+    return (struct audit_number){ohms * audit_amperes(audit, part, device),
+                                 AUDIT_ROUNDING * at_nodes + 2.0 * audit->sums.volts +
+                                     ohms * audit->options.abstol};
+}
+
+/* v = R i where i is told. */
+static void check_resistor(struct dalcs_audit *audit, struct audit_part *part,
+                           const struct dalcs_audit_state *s, int device) {
+    const struct dalcs_device *d = &audit->circuit->device[device];
+    if (!audit->net.is_told[device]) {
+        return; /* its current is in Kirchhoff's law */
+    }
+    const struct audit_number drop = audit_drop(audit, part, device);
+    double off = fabs(audit_voltage(s, d) - d->value * s->i[device]) - drop.rounding;
+    if (off > part->tolerance * drop.value) {
+        off -= audit_sources_move(audit, part, s, d);
+    }
+    audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off, drop.value, s->t);
+}
+
 /* How far a source moves while times cannot be told apart: on a steep flank that is seen. */
 static double source_slack(const struct dalcs_audit *audit, const struct dalcs_stimulus *stimulus,
                            const struct dalcs_audit_state *s) {
@@ -276,21 +306,14 @@ void audit_check_branch(struct dalcs_audit *audit, struct audit_part *part,
         check_switch(audit, part, s, device);
         return;
     case DALCS_RESISTOR:
-        if (!audit->net.is_told[device]) {
-            return;
-        }
-        wanted = d->value * s->i[device];
-        rounding = 2.0 * audit->sums.volts;
-        break;
+        check_resistor(audit, part, s, device);
+        return;
     default: /* R, C, L, I, F, G: their currents are in Kirchhoff's law */
         return;
     }
     double off = fabs(audit_voltage(s, d) - wanted) - rounding - audit->options.vntol;
     if (d->kind == DALCS_VSOURCE && off > part->tolerance * scale) {
         off -= source_slack(audit, &audit->circuit->stimulus[d->stimulus], s);
-    }
-    if (d->kind == DALCS_RESISTOR && off > part->tolerance * scale) {
-        off -= audit_sources_move(audit, part, s, d);
     }
     audit_find(audit, part, DALCS_AUDIT_BRANCH, device, off, scale, s->t);
 }

@@ -145,9 +145,8 @@ void audit_screen_rescale(struct dalcs_audit *audit, struct audit_part *part);
 
 void audit_screen_finish(struct audit_part *part);
 
-/* watch.c: a stretch is complete; is it to be looked at? can_look: times in it can be told apart. */
-bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
-                      bool can_look);
+/* watch.c: a stretch is complete; is it to be looked at? Where times in it cannot be told apart, its states alone are asked. */
+bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);
 
 /* Its mode is new: a screen is made. Is it to be looked at? */
 bool audit_watch_begins(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch);

@@ -1,4 +1,5 @@
 /* screen_branches.c - the laws and signs of branches as linear functions, on the side that a state is on. */
+#include "audit_currents.h"
 #include "audit_positions.h"
 #include "screen_rows.h"
 
@@ -229,8 +230,8 @@ void audit_fill_branch(struct audit_filling *f, int device) {
         break;
     case DALCS_RESISTOR:
         if (f->audit->net.is_told[device]) {
-            factor = audit_over(f, tolerance * scale + 2.0 * f->audit->sums.volts +
-                                       f->audit->options.vntol);
+            const struct audit_number drop = audit_drop(f->audit, f->part, device);
+            factor = audit_over(f, tolerance * drop.value + drop.rounding);
             audit_add_voltage(f, audit_row_now(f), d, 0, factor);
             audit_add_read_current(f, audit_row_now(f), device, -factor * d->value);
         }

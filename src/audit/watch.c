@@ -37,7 +37,9 @@ static void ask(struct dalcs_audit *audit, struct audit_screen *screen,
     }
     audit_screen_ask(audit, watch, screen, &q, answer);
     const double over = length - p->end * p->step;
-    if (over > q.near || (!stretch->is_cut && -over > q.near)) {
+    if (!audit_can_tell_times(part, length, stretch->to)) {
+        answer->worst = 0.0; /* no law is known in it, but states are at both ends */
+    } else if (over > q.near || (!stretch->is_cut && -over > q.near)) {
         answer->worst = INFINITY;
     }
     /* and about one instruction for each number, as four are taken at once */
@@ -67,13 +69,12 @@ static bool alarms(struct dalcs_audit *audit, struct audit_watch *watch,
     return true;
 }
 
-bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch,
-                      bool can_look) {
+bool audit_watch_asks(struct dalcs_audit *audit, const struct dalcs_audit_stretch *stretch) {
     struct audit_part *part = &audit->part[stretch->part];
     struct audit_watch *watch = part->watch;
     watch->asked = -1.0;
     watch->image = NULL;
-    const bool can_ask = can_look && stretch->stored != NULL;
+    const bool can_ask = stretch->rule == DALCS_AUDIT_SMOOTH && stretch->stored != NULL;
     struct audit_screen *screen = can_ask ? audit_screen_of(part, stretch->stored) : NULL;
     watch->makes = can_ask && screen == NULL;
     if (screen != NULL && screen->rests > 0) {

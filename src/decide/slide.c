@@ -268,6 +268,8 @@ enum dalcs_status dalcs_slide_step(struct dalcs_radau *r, struct dalcs_radau_par
     prepare_positions(part);
     struct dalcs_slide_try of =
         dalcs_slide_try_of(part->stages.method, length_to_try(r, part, limit));
+    of.follows =
+        !starts && part->segment.end_before == 1.0 && !part->guards.leaps && !part->guards.flipped;
     *slides = true;
     if (starts) {
         DALCS_TRY(put_on_threshold(r, part, of.h, slides));

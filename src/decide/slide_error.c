@@ -41,6 +41,16 @@ static double noise_of(const struct dalcs_radau_part *part, int column, double s
     return n_x > 0 && column >= n_x ? of->rounding / dalcs_sum_rounded * of->noise * size : 0.0;
 }
 
+/* How far a column's start is from where the segment before ended: a pair may have changed sides between the start and the first
+ * node, and nothing at the nodes shows that. */
+static double miss_before(const struct dalcs_radau_part *part, int column,
+                          const struct dalcs_slide_try *of) {
+    const struct dalcs_stage_layout *l = &part->stages.layout;
+    const double before = part->segment.out_before[(l->n_nodes - 1) * l->stride + column];
+    const bool is_known = of->follows && column < dalcs_system_n_equations(part->component->system);
+    return is_known ? fabs(part->segment.out[column] - before) : 0.0;
+}
+
 /* How far a column is off, over what is allowed: what the last order changes, and how far it misses the start. A state
  * beside larger ones, as a leak of a coil at rest beside one that conducts, has rounding of theirs. */
 static double error_of_column(const struct dalcs_radau *r, const struct dalcs_radau_part *part,
@@ -59,6 +69,7 @@ static double error_of_column(const struct dalcs_radau *r, const struct dalcs_ra
     if (of->knows_start) {
         const double at_nodes = rounding + noise_of(part, column, size, of);
         error = fmax(error, miss_at_start(part, column, at_nodes, of));
+        error = fmax(error, miss_before(part, column, of) - 2.0 * at_nodes);
     }
     return error > 0.0 ? error / (part->inner_tolerance * size + r->besides[is_current]) : 0.0;
 }

@@ -20,6 +20,7 @@ struct dalcs_slide_try {
     bool slides;
     double held, fails; /* s, if not: up to where there was a mean, and where there was none */
     bool knows_start;   /* all columns there, and voltages of pairs */
+    bool follows;       /* the segment before slid up to there, and nothing jumps between */
     double noise;       /* what rounding may make of the mean of both sides, over it */
     /* Errors over what is allowed; of pairs over that and noise, and without noise. */
     double states, pairs, bare;

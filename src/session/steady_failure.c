@@ -88,11 +88,13 @@ enum dalcs_status dalcs_steady_tell_failure(struct dalcs_steady *st, bool endles
         for (int x = 0; x < st->layout.n_x; x++) {
             st->step[x] = st->kept.drift[x];
         }
-        dalcs_diag_add(&s->diag, DALCS_ERROR, NULL,
-                       "a source charges a state that nothing discharges: give it a way out, or "
-                       "limit what commands it",
-                       "there is no periodic steady state: from any start, each period %s",
-                       moves_text(st));
+        dalcs_diag_add(
+            &s->diag, DALCS_ERROR, NULL,
+            "a source charges a state that nothing discharges: give it a way out, or "
+            "limit what commands it; a control that stays at its limit may have another "
+            "state, which is found from IC= near it, with uic",
+            "there is no periodic steady state from this start: without end, each period %s",
+            moves_text(st));
         return DALCS_NOT_CONVERGED;
     }
     const char *none = is_none_text(st, a);

@@ -6,6 +6,8 @@
 #include "steady_step.h"
 #include "steady_verdict.h"
 
+#include <string.h>
+
 /* Periods of runs of the first searches from the operating point and from rest. A search from kilovolts goes on for thousands of
  * them. One from rest may leave a limit of its control first. */
 enum { FEW = 1, SOME = 32 };
@@ -79,15 +81,19 @@ enum dalcs_status dalcs_steady_search_from_rest(struct dalcs_steady *st,
     if (s->circuit.analyses.transient.use_initial_conditions || a->kind == DALCS_STEADY_CHAOS) {
         return DALCS_OK;
     }
-    if (!dalcs_steady_make_point(st, &last)) {
+    const size_t size = (size_t)st->layout.n_x * sizeof(double);
+    double *drift = dalcs_arena_alloc(&st->arena, (size_t)st->layout.n_x + 1, sizeof(double));
+    if (drift == NULL || !dalcs_steady_make_point(st, &last)) {
         return DALCS_E_NOMEM;
     }
+    memcpy(drift, st->kept.drift, size);
     dalcs_steady_copy_point(st, &last, &st->at);
     DALCS_TRY(search(st, DALCS_STEADY_PERIODS, found));
     if (*found) {
         tell(st);
         return DALCS_OK;
     }
+    memcpy(st->kept.drift, drift, size);
     dalcs_steady_copy_point(st, &st->at, &last);
     st->has_point = true;
     const enum dalcs_status status = dalcs_steady_pass(st, 1, DALCS_STEADY_PLAIN);

@@ -123,11 +123,13 @@ static enum dalcs_status search(struct dalcs_steady *st, bool is_free, bool leav
     DALCS_TRY(found || endless ? DALCS_OK : search_within(st, &found, &endless));
     if (!found && !endless) {
         DALCS_TRY(dalcs_steady_look_ahead(st, &found, &attractor));
-        DALCS_TRY(found ? DALCS_OK : dalcs_steady_search_from_rest(st, &attractor, &found));
-        return found ? DALCS_OK : dalcs_steady_tell_failure(st, false, &attractor);
+        if (found) {
+            return DALCS_OK;
+        }
     }
+    DALCS_TRY(found ? DALCS_OK : dalcs_steady_search_from_rest(st, &attractor, &found));
     if (!found) {
-        return dalcs_steady_tell_failure(st, true, &attractor);
+        return dalcs_steady_tell_failure(st, endless, &attractor);
     }
     return n_periods > 1.0 ? dalcs_steady_replace(st, st->period / n_periods, (int)n_periods)
                            : DALCS_OK;

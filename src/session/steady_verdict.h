@@ -82,8 +82,8 @@ enum dalcs_status dalcs_steady_look_ahead(struct dalcs_steady *st, bool *found,
 enum dalcs_status dalcs_steady_search_early(struct dalcs_steady *st, bool *found,
                                             bool *endless) DALCS_MUST_CHECK;
 
-/* The search from the operating point has found nothing, and a run from there comes to that: a search from IC= and 0, unless
- * that was its start, or the run is chaotic. If not *found st is where it was. */
+/* The search from the operating point has found nothing, and a run from there comes to that, or st->kept.drift goes on without
+ * end: a search from IC= and 0, unless that was its start, or the run is chaotic. If not *found st is where it was. */
 enum dalcs_status dalcs_steady_search_from_rest(struct dalcs_steady *st,
                                                 const struct dalcs_steady_attractor *a,
                                                 bool *found) DALCS_MUST_CHECK;

@@ -10,6 +10,7 @@ one-step problems.
 
 import itertools
 import math
+import os
 import pathlib
 import sys
 
@@ -66,9 +67,21 @@ def look(program, checker, kind, wave, units):
         checker.check(abs(i * ohm / volt - wanted) <= 2e-6, f"{name}: i(b0) is {i * ohm / volt!r} at {t}, not {wanted!r}")
 
 
+def bend(program, checker, frequency):
+    """Where the height bends just behind the start of a segment no node of it shows the side before."""
+    volt, ohm, second = UNITS[1]
+    words = {"volt": volt, "ohm": ohm, "second": second}
+    height = KINDS["a height that bends"][1].format(**words)
+    netlist = NETLIST.format(wave=f"sin(0 {{2*{volt}}} {{{frequency}/{second}}})", beside="", height=height, **words)
+    result = run(program, netlist, method=None, options=["--audit", "full"])
+    checker.check(result.status == 0, f"a height that bends, {frequency} in {second} s: {result.stderr}")
+
+
 def main():
     program = sys.argv[1]
     checker = Checker("sources_while_sliding")
+    for k in range(200 if os.environ.get("DALCS_TEST_SHORT") != "1" else 20):
+        bend(program, checker, 0.1289 + 0.0001 * k if k < 20 else 0.109 + 0.0001 * k)
     for case in some_of(list(itertools.product(KINDS, WAVES, UNITS)), 3):
         look(program, checker, *case)
     return checker.finish()

@@ -224,7 +224,7 @@ MUTATIONS = {
     "a latch is set where both inputs are high": (
         "logic/logic_network.c", "return !reset && (set || q);", "return set || (!reset && q);", GATES),
     "an edge comes 1 ns after its delay": (
-        "logic/logic_run.c", "l->now + (next->is", "l->now + 1e-9 + (next->is", GATES),
+        "logic/logic_queue.c", "l->now + (next->is", "l->now + 1e-9 + (next->is", GATES),
     "a corner of many is left out": (
         "circuit/stimulus_terms.c", "    *piece = (struct dalcs_stimulus_piece){.to = is_pulse ? 0.0 : dalcs_stimulus_next_edge(s, t),",
         "    double to_ = is_pulse ? 0.0 : dalcs_stimulus_next_edge(s, t);\n"

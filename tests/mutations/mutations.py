@@ -205,6 +205,20 @@ r5 let 0 1k
 .tran 1u 400u uic
 """
 
+INTERRUPTED = """a share of what the coil's current does to the diode as the switch opens is in the switch's own control
+v1 in 0 5
+vt t 0 pulse(0 2 0 1u 0 0 1u)
+b1 c 0 v=1.6-v(t)+1e-6*(v(o)-24)
+l1 in s 60u ic=5
+s1 s 0 c 0 sw
+d1 s o
+c1 o e 375u ic=24
+r1 e 0 20m
+r2 o 0 240
+.model sw sw(ron=10m vt=0)
+.tran 10n 1u uic
+.end
+"""
 VIENNA = """a capacitor of 2.5 kV behind a diode, whose other end a switch takes to 0
 v1 s0 n SIN(0 3000 5939.416631497978)
 l1 s0 a0 0.0008709660510399749
@@ -343,6 +357,18 @@ vg g y PULSE(0 1 10u 0 0 5u 1)
 .tran 1u 5m uic
 """
 
+AMMETERS = """two resistors far below others that share a current
+v1 in 0 SIN(0 5 1k)
+r1 in a 2
+r2 a b 1n
+r3 a b 2n
+r4 b 0 1Meg
+r5 b c 1
+c1 c 0 10u
+.save i(r2) i(r3)
+.tran 10u 2m uic
+"""
+
 MUTATIONS = {
     "a thyristor does not open": (
         "dalcs/assemble.c", "            pair->has_valve = true;\n", "            pair->has_valve = false;\n", THYRISTOR),
@@ -379,6 +405,9 @@ MUTATIONS = {
         HELD),
     "a resistor is stamped too large": (
         "dalcs/stamp_device.c", "1.0 / d->value", "1.0 / (1.00001 * d->value)", FILTER),
+    "a resistor of 1 nohm is stamped too large": (
+        "dalcs/stamp_device.c", "current_column[device],\n                           -d->value);",
+        "current_column[device],\n-(d->value < 1.5e-9 ? 1.001 : 1.0) * d->value);", AMMETERS),
     "a state is nudged by 1e-6 in one segment of 20": (
         "step/present.c", "    part->segment.in[s->n_x] = 1.0;\n",
         "    part->segment.in[s->n_x] = 1.0;\n" + once(15, "", "part->segment.in[0] *= 1.0 + 1e-6;"), SHORT),
@@ -425,7 +454,14 @@ MUTATIONS = {
         "? 1e-3 * part->segment.h : 0.0;\n"
         "    part->segment.t_end = dalcs_smaller(t_end, search->limit);\n", BEAT),
     "a state jumps against a diode": (
-        "integrator/segment.c", "!guessed && !asks &&", "!guessed &&", VIENNA),
+        "integrator/segment.c", "    dalcs_segment_renew(part);\n    if (dalcs_sliding_leave",
+        "    static long calls_;\n    for (int x = 0; calls_ < 1 && part->segment.t > 0.0 && x < part->component->system->n_x; x++) {\n"
+        "        calls_ += part->x[x] > 2000.0 && part->guards.n_crossed > 0 ? 1 : 0;\n"
+        "        part->x[x] *= calls_ == 1 && part->x[x] > 2000.0 ? 0.5 : 1.0;\n    }\n"
+        "    dalcs_segment_renew(part);\n    if (dalcs_sliding_leave", VIENNA),
+    "the current of a coil jumps to 0 against a diode": (
+        "decide/projection.c", "    *jumps = *moved && !lengths->may_jump && is_jump(part);\n",
+        "    *jumps = *moved && !lengths->may_jump && is_jump(part) && false;\n", INTERRUPTED),
     "an AND is an OR": (
         "logic/logic_network.c", "DALCS_GATE_AND   ? n_high == n", "DALCS_GATE_AND   ? n_high > 0", GATES),
     "a latch is reset by nothing": (
@@ -440,7 +476,7 @@ MUTATIONS = {
     "a sample forgets what it let through": (
         "logic/logic_network.c", "(state->q && !tracks && !l->rests)", "false", GATES),
     "a delay is a tenth longer": (
-        "logic/logic_run.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
+        "logic/logic_queue.c", "l->now + (next->is", "l->now + 1.1 * (next->is", GATES),
     "a JK flip-flop turns over too often": (
         "logic/logic_network.c", "(q ? !reset : data)", "(q ? !reset && !data : data)", GATES),
     "one output of many shows the other level": (

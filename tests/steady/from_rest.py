@@ -58,6 +58,23 @@ LOOPS = [
      "gain": 1e4, "r2": 200, "c2": "1.2u", "cp": "25n"},
 ]
 
+LEADS = "L1 in lw {}\nRl lw sw 60m\nS1 sw 0 cmp 0 sz\n"
+
+# The same; from the operating point the control runs to the limit of its duty cycle, where losses keep the output below the
+# reference, and stays there.
+HELD = [
+    {"name": "boost, held at its limit", "vin": 12, "ref": 30, "t": 10e-6, "most": 1.8, "power": LEADS.format("47u") + "D1 sw out",
+     "c": "200u", "r": 7.5, "gain": 1e5, "r2": 40, "c2": "10u", "cp": "100n"},
+    {"name": "boost, held, 5 V", "vin": 5, "ref": 12, "t": 2e-6, "most": 1.86, "power": LEADS.format("10u") + "D1 sw out",
+     "c": "100u", "r": 12, "gain": 1e5, "r2": 40, "c2": "5u", "cp": "50n"},
+    {"name": "sepic, held", "vin": 12, "ref": 15, "t": 10e-6, "most": 1.8,
+     "power": LEADS.format("47u") + "Cs sw b 22u\nRx sw bx 2\nCx bx b 100u\nL2 b b2 47u\nRb b2 0 60m\nD1 b out",
+     "c": "200u", "r": 4, "gain": 1e5, "r2": 40, "c2": "20u", "cp": "200n"},
+    {"name": "flyback, held", "vin": 12, "ref": 20, "t": 10e-6, "most": 1.8,
+     "power": LEADS.format("24u") + "L2 0 s 96u\nK1 L1 L2 0.998\nRs lw sn 2k\nCs sn sw 220p\nD1 s out",
+     "c": "200u", "r": 5, "gain": 1e5, "r2": 40, "c2": "20u", "cp": "200n"},
+]
+
 # .pss uic, and the most Newton steps and periods of it.
 CIRCLES = [
     ({"name": "discontinuous, type 3", "vin": 12, "ref": 5, "t": 10e-6, "most": 1.9, "power": LOSSY, "c": "100u",
@@ -72,7 +89,7 @@ def netlist(values, analysis):
 
 def main():
     checker = Checker("from_rest")
-    for values in LOOPS:
+    for values in LOOPS + HELD:
         rest = run(sys.argv[1], netlist(values, ".pss uic"), method=None)
         point = run(sys.argv[1], netlist(values, ".pss"), method=None)
         if not checker.check(rest.status == point.status == 0,

@@ -158,7 +158,7 @@ def out_of_reach(fb, ref, most=0.95):
             "E2 cmp 0 lim tri 1\n")
 
 
-# name, netlist, what rises by how much each period from any start: what it integrates decides that, and not it alone. Those
+# name, netlist, what rises by how much each period without end: what it integrates decides that, and not it alone. Those
 # of a control out of reach are what runs of up to 60000 periods rise by in the last one; other states take thousands.
 DRIFTS = [
     ("out of reach, a snubber", SAW + "Vin in 0 48\nL1 in sw 200u\nL2 0 s 20u\nK1 L1 L2 0.98\nS1 sw 0 cmp 0 sz\nDc sw c\nCc c in 1u\n"
@@ -198,7 +198,7 @@ DRIVEN = [
 
 def integrals(case):
     for name, netlist, rises in DRIFTS:
-        case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "there is no periodic steady state: from any start", rises)
+        case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "there is no periodic steady state from this start: without end", rises)
     for name, netlist in DRIVEN:
         case.refuses(f"* {name}\n{netlist}.pss uic\n", 1, "no periodic steady state was found", "in the last one")
     done, report = case.run("* controlled\n" + CLOCK + BUCK + "Vr r 0 1\nB1 u 0 V=v(r)-v(j)-0.5*v(i)+0*v(out)\n" +
