@@ -2,6 +2,7 @@
  * where it begins and where it ends. */
 #include "slide.h"
 
+#include "formula_scale.h"
 #include "guard_scale.h"
 #include "power_of_step.h"
 #include "present.h"
@@ -11,7 +12,6 @@
 #include "sliding.h"
 #include "step_error.h"
 #include "step_length.h"
-#include "tied.h"
 
 #include <math.h>
 
@@ -21,7 +21,8 @@ enum { FIRST = 12 };
 /* No slide has so many segments: patience need not grow beyond. */
 enum { MOST_KEPT = 1 << 20 };
 
-/* At a threshold that a switch slides along the state is as exact as digits are. */
+/* At a threshold that a switch slides along the state is as exact as digits are. A jump's argument is known as well on either side
+ * of it, whichever of its pairs conducts there. */
 static void prepare_positions(struct dalcs_radau_part *part) {
     struct dalcs_positions *p = &part->component->positions;
     int n_pairs = part->component->system->n_pairs;
@@ -30,7 +31,7 @@ static void prepare_positions(struct dalcs_radau_part *part) {
         p->slack[i] = dalcs_guard_most_rounding(part, n_pairs + i, part->scales.unit);
     }
     for (int k = 0; k < p->n_jumps; k++) {
-        p->slack[p->n + k] = dalcs_tied_nothing(part, p->jump[k], part->scales.unit);
+        p->slack[p->n + k] = dalcs_formula_argument_noise(part, p->jump[k], part->scales.unit);
     }
 }
 

@@ -45,7 +45,8 @@ struct dalcs_logic_network {
     long acted;                   /* of the last one in which flip-flops have acted */
     struct dalcs_logic_was *was;  /* [n gates and comparators] */
     bool rests;                   /* a clock that stands high has not risen */
-    bool *moves; /* [n] after a failure: in the loop that does not settle, or not at rest */
+    bool *moves;  /* [n] after a failure: in the loop that does not settle, or not at rest */
+    bool gathers; /* moves keeps what has moved before at this instant */
 };
 
 /* Behind n, gate and bit. */

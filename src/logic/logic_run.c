@@ -10,6 +10,8 @@
 #include "look_behind.h"
 #include "radau.h"
 
+#include <string.h>
+
 /* What has come from outside has been there: where gates undo it through the circuit, memory sees it before it goes. */
 static bool is_to_stay(const struct dalcs_logic_run *l, int comparator, bool is_answer) {
     return is_answer && l->change[comparator].wave == l->wave;
@@ -88,9 +90,10 @@ static enum dalcs_status show_changes(struct dalcs_logic_run *l, double t, bool 
     dalcs_logic_effect_begin(l);
     for (int i = 0; i < l->network.moved.n; i++) {
         const int k = l->network.moved.gate[i];
-        l->network.moves[k] =
+        const bool moves =
             l->network.state[k].seen != l->output[k].shown || l->network.state[k].takes;
-        if (l->network.moves[k]) {
+        l->network.moves[k] = moves || (l->network.gathers && l->network.moves[k]);
+        if (moves) {
             DALCS_TRY(dalcs_logic_output_show(l, k, t));
             *acts = true;
         }
@@ -264,6 +267,15 @@ static enum dalcs_status pass_without_memory(struct dalcs_logic_run *l, double t
     return DALCS_OK;
 }
 
+/* Where waves go on, the second half of those that are allowed tells which gates move in them: what a gate does in the last one
+ * may be undone in it. */
+static void gather_moves(struct dalcs_logic_network *network, bool gathers) {
+    if (gathers && !network->gathers) {
+        memset(network->moves, 0, (size_t)network->n * sizeof(bool));
+    }
+    network->gathers = gathers;
+}
+
 /* Until nothing changes at t. Each wave moves an output. Without a loop through the circuit a change passes each
  * comparator and each gate at most once on its way, there and, as with the positions of switches, back. */
 static enum dalcs_status decide(struct dalcs_logic_run *l, double t) {
@@ -277,6 +289,7 @@ static enum dalcs_status decide(struct dalcs_logic_run *l, double t) {
         l->instant = l->network.instant = ++l->number;
     }
     while (acts || l->is_late) {
+        gather_moves(&l->network, rounds <= most / 2);
         DALCS_TRY(begin_wave(l, t, is_first));
         is_first = false;
         DALCS_TRY(pass_without_memory(l, t, most));

@@ -9,7 +9,7 @@ enum { AUDIT_GATE_BITS = 32 };
 
 struct audit_gate {
     bool q;                  /* decided */
-    bool clock, data, reset; /* when it was looked at last */
+    bool clock, data, reset; /* when it was looked at last; reset: or what else forces it */
     bool is_lost;            /* behind a delay something depended on an order within an instant */
     bool shown;              /* what it has to show by now */
     int count;               /* of clocks; -1: it is not known */

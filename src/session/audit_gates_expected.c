@@ -72,15 +72,16 @@ struct audit_verdict audit_gate_of_memory(const struct dalcs_audit_gates *a,
     const bool data = !is_latch && audit_gate_reads(a, &g->input[DALCS_GATE_DATA], &v.is_known);
     const bool has_reset =
         g->kind == DALCS_GATE_JK || g->kind == DALCS_GATE_SR || g->kind == DALCS_GATE_SR_LATCH;
-    const bool reset = has_reset && audit_gate_reads(a, &g->input[DALCS_GATE_RESET], &v.is_known);
     const bool is_open = dalcs_gate_is_transparent(g);
+    const bool reset = has_reset ? audit_gate_reads(a, &g->input[DALCS_GATE_RESET], &v.is_known)
+                                 : !is_open && (clears || sets);
     const bool acts = is_open ? clock : clock && !s->clock && s->was_seen;
     const bool next = !is_latch && after_clock(g->kind, s->q, data, reset);
     v.q = !clears && (sets || next);
     v.is_held = !clears && !sets && !acts;
     v.is_forced = clears || sets;
     if (!is_open && acts && !sets && !clears && (data != s->data || reset != s->reset)) {
-        v.is_known = false; /* did they change before the clock? */
+        v.is_known = false; /* did they, or what forced it, change before the clock? */
     }
     if (is_open && !acts && s->clock && (data != s->data || reset != s->reset)) {
         v.is_known = false; /* after the gate closed? */
@@ -99,11 +100,14 @@ struct audit_verdict audit_gate_of_counter(const struct dalcs_audit_gates *a,
                                            bool now) {
     struct audit_verdict v = {.is_known = true};
     const bool clock = audit_gate_reads(a, &g->input[0], &v.is_known);
+    const bool clears = audit_gate_reads(a, &g->input[1], &v.is_known);
     const bool rises = (clock && !s->clock && s->was_seen) || s->flashes == 1u;
     if (s->flashes > 2u) {
         s->count = -1; /* which was first? */
-    } else if (audit_gate_reads(a, &g->input[1], &v.is_known) || s->flashes == 2u) {
+    } else if (clears || s->flashes == 2u) {
         s->count = 0;
+    } else if (rises && s->reset && s->count == 0) { /* did that end before the clock? */
+        s->count = g->delay[1] > 0.0 ? -1 : now ? 1 : 0;
     } else if (rises && s->count >= 0) {
         s->count = s->count % g->cycles + 1;
     } else if (rises && g->delay[1] == 0.0 && now && !s->q && !s->is_lost) {
@@ -115,6 +119,7 @@ struct audit_verdict audit_gate_of_counter(const struct dalcs_audit_gates *a,
     v.is_known = v.is_known && s->count >= 0;
     v.q = s->count > 0 && s->count <= g->n_high;
     s->clock = clock;
+    s->reset = clears;
     return v;
 }
 

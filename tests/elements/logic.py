@@ -181,6 +181,13 @@ def small(checker, program):
     done = run_cards(program, "a loop", loop)
     checker.check(done.status != 0 and "a loop without delay does not settle: a1, a2, a3" in done.stderr,
                   f"a loop: {done.stderr}")
+    for buffers in 0, 2:  # without a hysteresis: its output brings the capacitor back to the threshold at once
+        passed = [f"b{k} b{k} 0 v=v({f'b{k - 1}' if k else 'q'})" for k in range(buffers)]
+        back = f"b{buffers - 1}" if buffers else "q"
+        held = ["v1 t 0 0.6", "a1 t x 0 0 0 0 q 0 SCHMITT vt=0 vh=0", *passed, f"r1 {back} x 1k", "c1 x 0 1n", ".tran 10n 5u uic"]
+        done = run_cards(program, "a capacitor held at a threshold", held)
+        checker.check(done.status != 0 and "does not settle: a1" in done.stderr,
+                      f"a capacitor held at a threshold: {done.stderr}")
     latch = ["v1 s 0 1", "v2 i 0 pwl(0 0 10n 1)", "b1 r 0 v=u(v(q)*v(i)-0.5)", "a1 s r 0 0 0 0 q 0 SRFLOP", "r1 q 0 1k", ".tran 1n 50n"]
     done = run_cards(program, "a flip-flop that resets itself", latch)
     checker.check(done.status != 0 and "settle: a1" in done.stderr and "let the pulse at S end earlier" in done.stderr,

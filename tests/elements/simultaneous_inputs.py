@@ -108,6 +108,14 @@ def flip_flops(checker, program):
         check(checker, program, f"two stages of a shift register, {what}",
               [pulse("s", 1, 1), pulse("d", 5, 100, 200), *clocked, *others, f"A1 d 0 {clock} 0 0 0 h 0 DFLOP",
                f"A2 h 0 {second} 0 0 0 q 0 DFLOP"], {"rises": 1, 10.9: 0, 11.1: 0, 20.9: 0, 21.1: 1})
+    for way, cards in ({"straight": []} | WAYS).items():  # a clear that a flip-flop of the same clock takes away has been there
+        let_go = [pulse("s", 1, 1), "A2 one 0 s 0 0 n o 0 DFLOP", "Ro o 0 1k", "Rn n 0 1k", *MODELS,
+                  *[card.format(s="n", n="p") for card in cards]]
+        clear = "p" if cards else "n"
+        check(checker, program, f"a counter let go by its own clock, {way}", [*let_go, f"A1 s {clear} 0 0 0 0 q 0 COUNTER cycles=2"],
+              {"rises": 2, 1.5: 0, 9.5: 0, 11.5: 1, 21.5: 0, 31.5: 1})
+        check(checker, program, f"a flip-flop let go by its own clock, {way}", [*let_go, f"A1 one 0 s 0 {clear} 0 q 0 DFLOP"],
+              {"rises": 1, 1.5: 0, 9.5: 0, 11.5: 1, 21.5: 1, 31.5: 1})
     jk = [pulse("s", 1, 1), pulse("j", 1, 3), "Ax [s j] [sd jd] adc", "Ay jd kd inv", "Az jd kd sd null null qd null jk",
           "Aw [qd] [q] dac", *BRIDGES, f".model jk d_jkff({NO_DELAY})", ".model dac dac_bridge(out_low=0 out_high=1)"]
     check(checker, program, "J and K that change places with the clock", jk, taken)

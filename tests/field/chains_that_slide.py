@@ -85,6 +85,25 @@ def check_start(checker, program):
         checker.check(worst <= 1e-6, f"start: v(q2) off by {worst:.2e}")
 
 
+def check_starts(checker, program):
+    """Of two that are at their thresholds from the start on, what each is known to is that of its argument, on whichever side it stands."""
+    for scale, seconds, above in ((1.0, 1.0, "<"), (1e3, 1e3, ">"), (1e-3, 1e-3, "<")):
+        c, t = 1e-9 * seconds, 1e-6 * seconds
+        part = [1 - 0.583 - (0.583 / 20 + (0.583 - 0.773) / 4), 1 - 0.773 - (0.773 / 20 + (0.773 - 0.583) / 4)]
+        other = ">" if above == "<" else "<"
+        cards = [card for k, threshold in enumerate((0.583, 0.773)) for card in (
+            f"b2{k} q{k} 0 v={{v(x{k}){other}{threshold * scale!r} ? 1 : 0}}", f"b1{k} p{k} 0 v={{v(q{k}){above}0.3 ? {scale!r} : 0}}",
+            f"r{k} p{k} x{k} 1k", f"c{k} x{k} 0 {c * (k + 1)!r}", f"ry{k} x{k} 0 20k")]
+        name = f"started together, {scale} V, {seconds} us"
+        netlist = "\n".join([name, *cards, "rx x0 x1 4k", f".tran {0.1 * t!r} {20 * t!r}", ".end", ""])
+        result = dalcs_program.run(program, netlist, method=None, options=["--audit", "full"])
+        if checker.check(result.status == 0, f"{name}: {result.stderr}"):
+            checker.check(result.report["work"]["steps"] <= 200, f"{name}: {result.report['work']['steps']} steps")
+            for k in range(2):
+                mean = part[k] if above == "<" else 1.0 - part[k]
+                checker.check(abs(result.column(f"v(q{k})")[-1] - mean) <= 1e-7, f"{name}: v(q{k}) {result.column(f'v(q{k})')[-1]}, not {mean}")
+
+
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     checker = dalcs_program.Checker("chains that slide")
@@ -93,6 +112,7 @@ def main():
             check_chain(checker, program, f"{chain}, {threshold}", chain, threshold)
     check_coupled(checker, program)
     check_start(checker, program)
+    check_starts(checker, program)
     return checker.finish()
 
 
