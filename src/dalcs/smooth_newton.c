@@ -33,8 +33,9 @@ enum dalcs_status dalcs_smooth_newton_setup(struct dalcs_smooth_newton *newton,
     newton->work.pivot = dalcs_arena_alloc(arena, n, sizeof(int));
     bool complete = newton->phi != NULL && newton->before != NULL && newton->x != NULL &&
                     newton->terms != NULL && newton->tangent != NULL && newton->other != NULL &&
-                    newton->slope != NULL && newton->work.matrix != NULL && newton->work.step != NULL &&
-                    newton->work.correction != NULL && newton->work.pivot != NULL;
+                    newton->slope != NULL && newton->work.matrix != NULL &&
+                    newton->work.step != NULL && newton->work.correction != NULL &&
+                    newton->work.pivot != NULL;
     DALCS_TRY(complete ? DALCS_OK : DALCS_E_NOMEM);
     return dalcs_smooth_inner_setup(&newton->inner, system, (int)n, arena);
 }
@@ -115,10 +116,13 @@ bool dalcs_smooth_newton_agrees(struct dalcs_smooth_newton *newton, double toler
         double least;
         const double off = off_of(newton, q, tolerance, &least);
         const double defect = over(off, least);
-        newton->outcome.worst = defect > newton->outcome.defect ? q % newton->system->n_smooth : newton->outcome.worst;
-        newton->outcome.defect = defect <= newton->outcome.defect ? newton->outcome.defect : defect; /* NAN stays */
+        newton->outcome.worst =
+            defect > newton->outcome.defect ? q % newton->system->n_smooth : newton->outcome.worst;
+        newton->outcome.defect =
+            defect <= newton->outcome.defect ? newton->outcome.defect : defect; /* NAN stays */
     }
-    *is_done = newton->outcome.defect <= 1.0 || !(newton->outcome.defect < 0.5 * newton->outcome.defect_before);
+    *is_done = newton->outcome.defect <= 1.0 ||
+               !(newton->outcome.defect < 0.5 * newton->outcome.defect_before);
     bool agrees = *is_done && !newton->limits;
     for (int q = 0; q < newton->n && agrees && !(newton->outcome.defect <= 1.0); q++) {
         agrees = is_excused(newton, q, tolerance);
@@ -201,9 +205,10 @@ bool dalcs_smooth_newton_overshoots(struct dalcs_smooth_newton *newton, double t
         return false;
     }
     for (int q = 0; q < newton->n; q++) {
-        newton->work.correction[q] = dalcs_smooth_rest_of_share(dalcs_smooth_newton_input(newton, q),
-                                                           newton->share, newton->x[q]) -
-                                newton->inner.next[q];
+        newton->work.correction[q] =
+            dalcs_smooth_rest_of_share(dalcs_smooth_newton_input(newton, q), newton->share,
+                                       newton->x[q]) -
+            newton->inner.next[q];
     }
     (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->work.matrix, newton->n,
                          newton->work.pivot, newton->work.correction, newton->n);
@@ -302,8 +307,9 @@ bool dalcs_smooth_newton_step(struct dalcs_smooth_newton *newton) {
         put_tangent(newton, q);
     }
     bool is_solved =
-        factor(newton) && LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->work.matrix,
-                                         newton->n, newton->work.pivot, newton->work.step, newton->n) == 0;
+        factor(newton) &&
+        LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', newton->n, 1, newton->work.matrix, newton->n,
+                       newton->work.pivot, newton->work.step, newton->n) == 0;
     memcpy(newton->before, newton->phi, (size_t)newton->n * sizeof(double));
     for (int q = 0; q < newton->n && is_solved; q++) {
         newton->phi[q] = value_beside(newton, q);
