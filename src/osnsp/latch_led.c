@@ -178,7 +178,9 @@ enum dalcs_status dalcs_osnsp_answer_led(struct dalcs_osnsp *p, double sigma, co
     command(p, false);
     put_led(p);
     for (int round = 0; round <= p->latches.n_led && status == DALCS_OK && !*found; round++) {
-        status = dalcs_osnsp_solve_given(p, sigma, u, y);
+        status = p->smooth.newton == NULL
+                     ? dalcs_osnsp_solve_given(p, sigma, u, y)
+                     : dalcs_osnsp_solve_smooth(p, sigma, u, y, dalcs_osnsp_solve_given);
         *found = status == DALCS_OK && !turn_led(p, y);
     }
     command(p, true);
